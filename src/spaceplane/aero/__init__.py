@@ -1,0 +1,1 @@
+"""Coefficients and derivatives in stated axes."""

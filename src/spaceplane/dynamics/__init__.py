@@ -1,0 +1,1 @@
+"""How it moves: frames, equations of motion, linearisation, modes."""

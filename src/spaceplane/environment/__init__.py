@@ -1,0 +1,1 @@
+"""Where it flies: atmosphere, gravity, constants, validity of the gas model."""

@@ -1,0 +1,1 @@
+"""The air around the vehicle: octree and cut cells."""

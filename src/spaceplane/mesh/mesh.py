@@ -1,0 +1,67 @@
+"""Geometry and connectivity of a polyhedral mesh; it knows nothing of flow."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Mesh:
+    """A polyhedral finite-volume mesh, ours or an imported one.
+
+    All vectors in geometry axes (x aft, y right, z up), m, m2 and m3, float64.
+
+    Attributes:
+        cell_volume: [cell] volume.
+        cell_center: [cell, xyz] centroid.
+        cell_size: [cell] edge length of the octree cube (cube root of the volume elsewhere).
+        face_cells: [face, 2] int32 the two cells of an interior face.
+        face_area: [face, xyz] area vector pointing from `face_cells[:, 0]` to `face_cells[:, 1]`.
+        face_center: [face, xyz] centroid of the face.
+        wall_cell: [wall] int32 cell of a wall face. At most one wall face per cell on cut-cell meshes.
+        wall_area: [wall, xyz] area vector pointing out of the fluid, into the body.
+        wall_center: [wall, xyz] centroid of the wall face.
+        far_cell, far_area, far_center: the same for the far-field boundary.
+        piece_wall: [piece] int32 wall face that a piece of surface belongs to. Pieces split a wall face by part and
+            by whether it faces upstream, so that forces by part sum to the force on the wall exactly.
+        piece_area: [piece, xyz] area vector pointing into the body.
+        piece_center: [piece, xyz] centroid of the piece.
+        piece_part: [piece] int32 index into `part_names`.
+        part_names: names of the parts of the surface.
+        record: what the generator has to say: counts, merged and split cells, warnings, seconds.
+    """
+
+    cell_volume: np.ndarray
+    cell_center: np.ndarray
+    cell_size: np.ndarray
+    face_cells: np.ndarray
+    face_area: np.ndarray
+    face_center: np.ndarray
+    wall_cell: np.ndarray
+    wall_area: np.ndarray
+    wall_center: np.ndarray
+    far_cell: np.ndarray
+    far_area: np.ndarray
+    far_center: np.ndarray
+    piece_wall: np.ndarray
+    piece_area: np.ndarray
+    piece_center: np.ndarray
+    piece_part: np.ndarray
+    part_names: tuple[str, ...]
+    record: dict = field(default_factory=dict)
+
+    @property
+    def cells(self) -> int:
+        """Number of cells."""
+        return len(self.cell_volume)
+
+    def closure(self) -> np.ndarray:
+        """[cell, xyz] sum of outward area vectors of each cell, m2: zero to round-off on a closed mesh."""
+        total = np.zeros((self.cells, 3))
+        np.add.at(total, self.face_cells[:, 0], self.face_area)
+        np.add.at(total, self.face_cells[:, 1], -self.face_area)
+        np.add.at(total, self.wall_cell, self.wall_area)
+        np.add.at(total, self.far_cell, self.far_area)
+        return total

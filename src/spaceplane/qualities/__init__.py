@@ -1,0 +1,1 @@
+"""How it handles: military flying-quality criteria."""

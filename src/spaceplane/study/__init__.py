@@ -1,0 +1,1 @@
+"""Many cases: result store, sensitivity, comparison."""

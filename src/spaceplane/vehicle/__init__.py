@@ -1,0 +1,1 @@
+"""What flies: shape, deflections, mass, reference lengths and the one watertight surface."""
