@@ -1,1 +1,6 @@
-"""Why to trust it: published cases."""
+"""Why to trust it: published and exact cases, run by `spaceplane validate`."""
+
+from spaceplane.validation.cases import CASES, run
+from spaceplane.validation.records import Record, markdown_page, markdown_table, passed, read, write
+
+__all__ = ["CASES", "Record", "markdown_page", "markdown_table", "passed", "read", "run", "write"]

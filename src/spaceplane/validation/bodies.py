@@ -1,0 +1,164 @@
+"""Watertight surfaces of the published test bodies.
+
+All in geometry axes: x aft from the nose, y right, z up, metres; triangles counter-clockwise seen from the air.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from spaceplane.errors import InputError
+from spaceplane.vehicle.surface import Surface
+
+
+def revolve(profile: np.ndarray, segments: int, base_from: int | None = None) -> Surface:
+    """Turn a meridian about the x axis into a closed surface.
+
+    Args:
+        profile: [station, (x, r)] m from the nose (r = 0) to the tail (r = 0), r > 0 between.
+        segments: number of facets around the axis; a multiple of 4 keeps the surface symmetric in y and z.
+        base_from: first station of the base; the strips from there on are tagged `base`, all others `forebody`.
+
+    Returns:
+        A surface with parts `forebody` and `base`. Its facets are inscribed: the enclosed area of each section is
+        smaller than the circle's by the factor sin(2 pi / segments) / (2 pi / segments).
+    """
+    profile = np.asarray(profile, float)
+    if profile[0, 1] != 0.0 or profile[-1, 1] != 0.0 or np.any(profile[1:-1, 1] <= 0.0):
+        raise InputError("profile: the radius must be zero at both ends and positive between")
+    if segments < 8 or segments % 4:
+        raise InputError(f"segments = {segments}: a multiple of 4, at least 8, is needed")
+    inner = profile[1:-1]
+    rings = np.empty((len(inner), segments, 3))
+    rings[..., 0] = inner[:, :1]
+    rings[..., 1] = inner[:, 1:] * _exact_cosine(segments)
+    rings[..., 2] = inner[:, 1:] * np.roll(_exact_cosine(segments), segments // 4)
+    points = np.vstack([[profile[0, 0], 0.0, 0.0], rings.reshape(-1, 3), [profile[-1, 0], 0.0, 0.0]])
+
+    around = np.arange(segments)
+    following = (around + 1) % segments
+    triangles, strip = [np.stack([np.zeros_like(around), 1 + following, 1 + around], axis=1)], [np.zeros(segments, int)]
+    for ring in range(len(inner) - 1):
+        a, b = 1 + ring * segments + around, 1 + ring * segments + following
+        c, d = a + segments, b + segments
+        triangles += [np.stack([a, b, d], axis=1), np.stack([a, d, c], axis=1)]
+        strip += [np.full(2 * segments, ring + 1)]
+    last = 1 + (len(inner) - 1) * segments
+    triangles.append(np.stack([np.full_like(around, len(points) - 1), last + around, last + following], axis=1))
+    strip.append(np.full(segments, len(inner)))
+
+    first_base = len(profile) if base_from is None else base_from
+    part = (np.concatenate(strip) >= first_base).astype(np.int32)
+    return Surface(points, np.concatenate(triangles).astype(np.int64), part, ("forebody", "base"))
+
+
+def cone(half_angle: float, length: float = 1.0, segments: int = 96, base_rings: int = 1) -> Surface:
+    """A circular cone with a flat base, apex at the origin.
+
+    Args:
+        half_angle: half angle, rad.
+        length: length along the axis, m.
+        segments: facets around the axis.
+        base_rings: concentric rings of the base.
+    """
+    # Facets of equal area to the circle, so that the normal force on the base area is not short by the inscription.
+    radius = length * math.tan(half_angle) * _equal_area_factor(segments)
+    base = [(length, radius * (1.0 - ring / base_rings)) for ring in range(base_rings + 1)]
+    return revolve(np.array([(0.0, 0.0), *base]), segments, base_from=1)
+
+
+def sphere(radius: float = 1.0, segments: int = 96) -> Surface:
+    """A sphere of the true volume about (radius, 0, 0), m; `segments` facets around, half as many along the meridian."""
+    polar = np.linspace(0.0, math.pi, segments // 2 + 1)
+    profile = np.stack([radius * (1.0 - np.cos(polar)), radius * np.sin(polar)], axis=1)
+    profile[[0, -1], 1] = 0.0
+    # Facets of the sphere's own volume: the polyhedron is then neither systematically thin nor thick.
+    inscribed = revolve(profile, segments, base_from=segments // 4)
+    scale = (4.0 / 3.0 * math.pi * radius**3 / inscribed.volume) ** (1.0 / 3.0)
+    center = np.array([radius, 0.0, 0.0])
+    points = center + (inscribed.points - center) * scale
+    return Surface(points, inscribed.triangles, inscribed.part, inscribed.part_names)
+
+
+def hb2(diameter: float = 1.0, segments: int = 96, arc_points: int = 24) -> Surface:
+    """The AGARD HB-2 hypervelocity ballistic model.
+
+    Spherical nose, 25 deg cone, fairing arc, cylinder, flare fairing arc, 10 deg flare, flat base; in cylinder
+    diameters the length is 4.9, the nose radius 0.3, the arcs' radii 0.7 and 4.0, the base diameter 1.6.
+
+    Args:
+        diameter: diameter of the cylinder, m.
+        segments: facets around the axis.
+        arc_points: stations on each arc.
+
+    Source: Gray, AEDC-TDR-64-137 (1964), figure 1.
+    """
+    cone_angle, flare_angle, nose, shoulder, fairing = math.radians(25.0), math.radians(10.0), 0.3, 0.7, 4.0
+    polar = np.linspace(0.0, 0.5 * math.pi - cone_angle, arc_points)
+    cap = np.stack([nose * (1.0 - np.cos(polar)), nose * np.sin(polar)], axis=1)
+    # Shoulder arc: tangent to the 25 deg cone and to the cylinder of radius 0.5, centre below the cylinder's surface.
+    turn = np.linspace(cone_angle, 0.0, arc_points)
+    x_cone, r_cone = cap[-1]
+    r_tangent = 0.5 - shoulder * (1.0 - math.cos(cone_angle))
+    x_tangent = x_cone + (r_tangent - r_cone) / math.tan(cone_angle)
+    x_center = x_tangent + shoulder * math.sin(cone_angle)
+    arc = np.stack([x_center - shoulder * np.sin(turn), 0.5 - shoulder * (1.0 - np.cos(turn))], axis=1)
+    # Flare arc: tangent to the cylinder and to the 10 deg flare that ends at radius 0.8, x = 4.9.
+    r_flare = 0.5 + fairing * (1.0 - math.cos(flare_angle))
+    x_flare = 4.9 - (0.8 - r_flare) / math.tan(flare_angle)
+    x_start = x_flare - fairing * math.sin(flare_angle)
+    turn = np.linspace(0.0, flare_angle, arc_points)
+    flare = np.stack([x_start + fairing * np.sin(turn), 0.5 + fairing * (1.0 - np.cos(turn))], axis=1)
+    profile = np.vstack([cap, arc, flare, [[4.9, 0.8], [4.9, 0.0]]])
+    profile[0] = 0.0
+    profile = profile * [1.0, _equal_area_factor(segments)]
+    return revolve(profile * diameter, segments, base_from=len(profile) - 2)
+
+
+def diamond_wing(
+    chord: float = 1.0, span: float = 2.0, thickness: float = 0.05, tip_chord: float | None = None
+) -> Surface:
+    """A wing of double-wedge section in the plane z = 0 with flat tips, leading edge from the origin.
+
+    Args:
+        chord: root chord, m.
+        span: tip to tip, m.
+        thickness: thickness over chord, at mid chord.
+        tip_chord: tip chord, m; the root's by default. The half-chord line is unswept.
+    """
+    tip = chord if tip_chord is None else tip_chord
+    ends = []
+    for y, local in ((-0.5 * span, tip), (0.0, chord), (0.5 * span, tip)):
+        middle, half = 0.5 * chord, 0.5 * local
+        rise = 0.5 * thickness * local
+        ends.append([(middle - half, y, 0.0), (middle, y, rise), (middle + half, y, 0.0), (middle, y, -rise)])
+    points = np.array(ends).reshape(-1, 3)
+    triangles, part = [], []
+    for panel in range(2):
+        a, b = 4 * panel, 4 * panel + 4
+        for corner in range(4):
+            p, q = corner, (corner + 1) % 4
+            triangles += [(a + p, b + q, b + p), (a + p, a + q, b + q)]
+            part += [panel, panel]
+    triangles += [(0, 3, 2), (0, 2, 1), (8, 9, 10), (8, 10, 11)]
+    part += [0, 0, 1, 1]
+    surface = Surface(points, np.array(triangles, np.int64), np.array(part, np.int32), ("wing_left", "wing_right"))
+    if surface.volume < 0.0:
+        surface = Surface(points, surface.triangles[:, ::-1].copy(), surface.part, surface.part_names)
+    return surface
+
+
+def _exact_cosine(segments: int) -> np.ndarray:
+    """[segments] cosine of equally spaced angles, symmetric to the last bit about both axes."""
+    quarter = np.sin(0.5 * math.pi * np.arange(segments // 4 + 1) / (segments // 4))
+    quarter[-1] = 1.0
+    up, down = quarter[:-1], quarter[:0:-1]
+    return np.concatenate([down, -up, -down, up])
+
+
+def _equal_area_factor(segments: int) -> float:
+    """Radius factor that gives a regular polygon the area of its circle."""
+    step = 2.0 * math.pi / segments
+    return math.sqrt(step / math.sin(step))

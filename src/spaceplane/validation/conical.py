@@ -1,0 +1,141 @@
+"""Exact supersonic flow past a circular cone at zero incidence, and the published first-order normal force.
+
+Taylor and Maccoll, "The air pressure on a cone moving at high speeds", Proc. R. Soc. A 139 (1933);
+equations numbered as in Anderson, Modern Compressible Flow, 3rd ed., chapter 10.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq, minimize_scalar
+
+from spaceplane.errors import InputError
+
+CN_ALPHA_STONE = {
+    (1.5, 10.0): 1.8282,
+    (1.5, 20.0): 1.6057,
+    (1.5, 30.0): 1.3821,
+    (3.0, 10.0): 1.8203,
+    (3.0, 20.0): 1.6860,
+    (3.0, 30.0): 1.4497,
+    (10.0, 10.0): 1.9217,
+    (10.0, 20.0): 1.7782,
+    (10.0, 30.0): 1.5124,
+}
+"""(Mach, half angle in deg) -> C_N_alpha per rad on the base area, gamma 1.4: Stone's first-order theory
+(J. Math. Phys. 27, 1948), as tabulated by Kopal (MIT Tech. Rep. 3, 1947) and Sims (NASA SP-3007, 1964)."""
+
+
+@dataclass(frozen=True)
+class ConeFlow:
+    """Axisymmetric flow past a cone.
+
+    Attributes:
+        mach: free-stream Mach number.
+        half_angle: half angle of the cone, rad.
+        shock_angle: angle of the attached shock from the axis, rad.
+        surface_cp: pressure coefficient on the cone.
+        surface_mach: Mach number on the cone.
+    """
+
+    mach: float
+    half_angle: float
+    shock_angle: float
+    surface_cp: float
+    surface_mach: float
+
+
+def taylor_maccoll(mach: float, half_angle: float, gamma: float = 1.4) -> ConeFlow:
+    """Solve the conical flow with the weak attached shock.
+
+    Args:
+        mach: free-stream Mach number, above 1.
+        half_angle: half angle of the cone, rad.
+        gamma: ratio of specific heats.
+
+    Raises:
+        InputError: if the Mach number is not supersonic or the shock is detached.
+    """
+    if not mach > 1.0:
+        raise InputError(f"mach = {mach}: the conical flow needs a Mach number above 1")
+    mach_angle = math.asin(1.0 / mach)
+    widest = minimize_scalar(
+        lambda shock: -_cone_behind(mach, shock, gamma)[0],
+        bounds=(mach_angle + 1e-6, 0.5 * math.pi - 1e-4),
+        method="bounded",
+    )
+    if not 0.0 < half_angle < -widest.fun:
+        raise InputError(
+            f"half_angle_deg = {math.degrees(half_angle):.4g}: at Mach {mach:g} the shock is attached for half angles "
+            f"between 0 and {math.degrees(-widest.fun):.2f} deg"
+        )
+    lower = mach_angle * (1.0 + 1e-9) + 1e-9
+    shock = brentq(lambda angle: _cone_behind(mach, angle, gamma)[0] - half_angle, lower, widest.x, xtol=1e-12)
+    _, speed = _cone_behind(mach, shock, gamma)
+    pressure = _surface_pressure(mach, shock, speed, gamma)
+    return ConeFlow(
+        mach=mach,
+        half_angle=half_angle,
+        shock_angle=shock,
+        surface_cp=(pressure - 1.0) * 2.0 / (gamma * mach**2),
+        surface_mach=_mach_of(speed, gamma),
+    )
+
+
+def center_of_pressure(half_angle: float) -> float:
+    """Centre of pressure behind the apex over the length, 2 / (3 cos^2 half_angle): exact for conical flow."""
+    return 2.0 / (3.0 * math.cos(half_angle) ** 2)
+
+
+def _mach_of(speed: float, gamma: float) -> float:
+    """Mach number from the speed over the maximum speed (Anderson 10.16 inverted)."""
+    return math.sqrt(2.0 / (gamma - 1.0) * speed**2 / (1.0 - speed**2))
+
+
+def _behind_shock(mach: float, shock: float, gamma: float) -> tuple[float, float, float]:
+    """Mach number, flow deflection and pressure ratio behind an oblique shock (Anderson 4.7 to 4.17)."""
+    normal = (mach * math.sin(shock)) ** 2
+    deflection = math.atan(2.0 / math.tan(shock) * (normal - 1.0) / (mach**2 * (gamma + math.cos(2.0 * shock)) + 2.0))
+    normal_behind = (normal + 2.0 / (gamma - 1.0)) / (2.0 * gamma / (gamma - 1.0) * normal - 1.0)
+    return (
+        math.sqrt(normal_behind) / math.sin(shock - deflection),
+        deflection,
+        1.0 + 2.0 * gamma / (gamma + 1.0) * (normal - 1.0),
+    )
+
+
+def _cone_behind(mach: float, shock: float, gamma: float) -> tuple[float, float]:
+    """Half angle of the cone that holds this shock, and the speed on it over the maximum speed.
+
+    Integrates the Taylor-Maccoll equation (Anderson 10.15) from the shock until the velocity across the ray vanishes.
+    """
+    mach_2, deflection, _ = _behind_shock(mach, shock, gamma)
+    speed = (2.0 / ((gamma - 1.0) * mach_2**2) + 1.0) ** -0.5
+    start = np.array([speed * math.cos(shock - deflection), -speed * math.sin(shock - deflection)])
+
+    def rates(theta: float, velocity: np.ndarray) -> list[float]:
+        radial, normal = velocity
+        a2 = 0.5 * (gamma - 1.0) * (1.0 - radial**2 - normal**2)
+        turning = (normal**2 * radial - a2 * (2.0 * radial + normal / math.tan(theta))) / (a2 - normal**2)
+        return [normal, turning]
+
+    def at_wall(theta: float, velocity: np.ndarray) -> float:
+        return velocity[1]
+
+    at_wall.terminal = True
+    path = solve_ivp(rates, (shock, 1e-8), start, method="DOP853", rtol=1e-11, atol=1e-12, events=at_wall)
+    if not len(path.t_events[0]):
+        return 0.0, float(path.y[0, -1])
+    return float(path.t_events[0][0]), float(path.y_events[0][0][0])
+
+
+def _surface_pressure(mach: float, shock: float, speed: float, gamma: float) -> float:
+    """Pressure on the cone over the free-stream static pressure: jump at the shock, then isentropic compression."""
+    mach_2, _, jump = _behind_shock(mach, shock, gamma)
+    mach_wall = _mach_of(speed, gamma)
+    base = (1.0 + 0.5 * (gamma - 1.0) * mach_2**2) / (1.0 + 0.5 * (gamma - 1.0) * mach_wall**2)
+    return jump * base ** (gamma / (gamma - 1.0))
