@@ -9,9 +9,9 @@ from numpy.typing import ArrayLike
 def direction(alpha: ArrayLike, beta: ArrayLike) -> np.ndarray:
     """Unit vector of the free-stream velocity relative to the body, in geometry axes (x aft, y right, z up).
 
-    The vehicle's velocity in body axes (x forward, y right, z down) is V (cos a cos b, sin b, sin a cos b); the air moves
-    the other way, and geometry axes reverse x and z. Sideslip is positive with the wind from the right, so that
-    the air then moves towards the left (negative y).
+    The vehicle's velocity in body axes (x forward, y right, z down) is V (cos a cos b, sin b, sin a cos b); the air
+    moves the other way, and geometry axes reverse x and z. Sideslip is positive with the wind from the right, so
+    that the air then moves towards the left (negative y).
 
     Args:
         alpha: [condition] angle of attack, rad, positive nose up.
