@@ -70,7 +70,7 @@ def cone(half_angle: float, length: float = 1.0, segments: int = 96, base_rings:
 
 
 def sphere(radius: float = 1.0, segments: int = 96) -> Surface:
-    """A sphere of the true volume about (radius, 0, 0), m; `segments` facets around, half as many along the meridian."""
+    """A sphere of the true volume about (radius, 0, 0), m; `segments` facets around, half as many nose to tail."""
     polar = np.linspace(0.0, math.pi, segments // 2 + 1)
     profile = np.stack([radius * (1.0 - np.cos(polar)), radius * np.sin(polar)], axis=1)
     profile[[0, -1], 1] = 0.0

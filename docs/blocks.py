@@ -1,0 +1,95 @@
+"""The generated blocks: each function returns Markdown made from the code or from stored results in docs/data."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from collections.abc import Callable, Sequence
+from dataclasses import MISSING, fields
+from pathlib import Path
+from typing import Any
+
+DATA = Path(__file__).resolve().parent / "data"
+DEMO = DATA / "demo.json"
+
+
+def table(head: Sequence[str], rows: Sequence[Sequence[object]], align: str = "") -> str:
+    """A Markdown table; `align` has one of l and r per column."""
+    rule = ["---:" if kind == "r" else "---" for kind in align.ljust(len(head), "l")]
+    return "\n".join("| " + " | ".join(str(cell) for cell in row) + " |" for row in (head, rule, *rows))
+
+
+def store(path: Path, document: Any) -> None:
+    """Write JSON with one line per innermost list or short record, for readable differences."""
+    DATA.mkdir(exist_ok=True)
+    path.write_text(json.dumps(document, indent=1, allow_nan=False) + "\n", encoding="utf-8")
+
+
+def validation_path(case: str) -> Path:
+    return DATA / f"validation_{case}.json"
+
+
+def store_validation(path: Path) -> None:
+    """Keep the records of each case of a validation.json, one file per case, so that cases can be rerun apart."""
+    document = json.loads(path.read_text(encoding="utf-8"))
+    for case in dict.fromkeys(record["case"] for record in document["records"]):
+        own = [record for record in document["records"] if record["case"] == case]
+        store(validation_path(case), document | {"records": own})
+
+
+def settings_table(record: type) -> str:
+    """Fields of a settings dataclass with default and the description from its docstring."""
+    described: dict[str, str] = {}
+    name = ""
+    for line in (record.__doc__ or "").split("Attributes:")[-1].splitlines():
+        text = line.strip()
+        head, colon, rest = text.partition(":")
+        if colon and head in {item.name for item in fields(record)}:
+            name, described[head] = head, rest.strip()
+        elif name and text:
+            described[name] += " " + text
+    rows = []
+    for item in fields(record):
+        default = "required" if item.default is MISSING and item.default_factory is MISSING else repr(item.default)
+        if item.default is MISSING and item.default_factory is not MISSING:
+            default = repr(item.default_factory())
+        rows.append((f"`{item.name}`", f"`{default}`", described.get(item.name, "")))
+    return table(("setting", "default", "meaning"), rows)
+
+
+def mesh_settings() -> str:
+    from spaceplane.mesh.settings import MeshSettings
+
+    return settings_table(MeshSettings)
+
+
+def flow_settings() -> str:
+    from spaceplane.flow.settings import FlowSettings
+
+    return settings_table(FlowSettings)
+
+
+def validation_block(case: str) -> Callable[[], str]:
+    """Table of one validation case as last run on fine meshes."""
+
+    def block() -> str:
+        from spaceplane.validation import markdown_table, read
+
+        records = read(validation_path(case))
+        gating = [record for record in records if record.gate]
+        lead = f"{sum(record.within for record in gating)} of {len(gating)} judged rows lie inside their band.\n\n"
+        notes = dict.fromkeys(record.note for record in records if record.note)
+        sources = "; ".join(dict.fromkeys(record.source for record in records))
+        tail = "".join(f"\n- {note}" for note in notes)
+        return f"{lead}{markdown_table(records)}\nSources: {sources}.\n{tail}"
+
+    return block
+
+
+BLOCKS: dict[str, Callable[[], str]] = {
+    "mesh settings": mesh_settings,
+    "flow settings": flow_settings,
+    "validation cones": validation_block("cones"),
+    "validation sphere": validation_block("sphere"),
+    "validation horus": validation_block("horus"),
+}

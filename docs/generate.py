@@ -1,0 +1,69 @@
+"""Rebuild the generated tables of the documentation and the README from the code and from stored results.
+
+    python docs/generate.py            rewrite every generated block
+    python docs/generate.py --check    exit 1 and name the pages that are out of date
+    python docs/generate.py --store-demo out/horus-2b/result.json
+    python docs/generate.py --store-validation out/validation/validation.json
+
+A block stands between `<!-- generated: NAME -->` and `<!-- end generated -->`; NAME is a function of BLOCKS.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import re
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+DOCS = Path(__file__).resolve().parent
+sys.path.insert(0, str(DOCS))
+
+import blocks  # noqa: E402  (beside this script)
+
+PAGES = [*sorted(DOCS.rglob("*.md")), DOCS.parent / "README.md"]
+PATTERN = re.compile(r"(<!-- generated: ([a-z0-9 -]+) -->\n).*?(<!-- end generated -->)", re.DOTALL)
+BLOCKS: dict[str, Callable[[], str]] = blocks.BLOCKS
+
+
+def rebuilt(text: str) -> str:
+    """The page with every generated block made anew."""
+
+    def block(match: re.Match[str]) -> str:
+        name = match[2]
+        if name not in BLOCKS:
+            raise SystemExit(f"unknown generated block {name!r}; known: {', '.join(BLOCKS)}")
+        return f"{match[1]}\n{BLOCKS[name]().strip()}\n\n{match[3]}"
+
+    return PATTERN.sub(block, text)
+
+
+def stale() -> list[Path]:
+    """Pages whose generated blocks are out of date."""
+    return [page for page in PAGES if rebuilt(text := page.read_text(encoding="utf-8")) != text]
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--check", action="store_true", help="change nothing; exit 1 when a page is out of date")
+    parser.add_argument("--store-demo", type=Path, metavar="RESULT", help="keep what the pages show of a result.json")
+    parser.add_argument("--store-validation", type=Path, metavar="FILE", help="keep the records of a validation.json")
+    options = parser.parse_args()
+    if options.store_demo:
+        blocks.store(blocks.DEMO, blocks.demo_extract(json.loads(options.store_demo.read_text(encoding="utf-8"))))
+    if options.store_validation:
+        blocks.store_validation(options.store_validation)
+    old = stale()
+    if options.check:
+        for page in old:
+            print(f"out of date: {page.relative_to(DOCS.parent)}; run python docs/generate.py")
+        return 1 if old else 0
+    for page in old:
+        page.write_text(rebuilt(page.read_text(encoding="utf-8")), encoding="utf-8")
+        print(f"rewrote {page.relative_to(DOCS.parent)}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,104 @@
+"""Validation case: pointed cones at zero and small incidence against the exact conical solution."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import xarray as xr
+
+from spaceplane.aero.integrate import integrate
+from spaceplane.flow.solution import FlowConditions, Solution
+from spaceplane.validation import bodies
+from spaceplane.validation.cases import Progress
+from spaceplane.validation.conical import CN_ALPHA_STONE, center_of_pressure, taylor_maccoll
+from spaceplane.validation.flowcase import part_of_wall, reference_of, solve_body
+from spaceplane.validation.records import Record
+
+CASE = "cones"
+MACHS = (1.5, 3.0, 10.0)
+HALF_ANGLES_DEG = (10.0, 20.0, 30.0)
+STEP = math.radians(1.0)
+EXACT = "Taylor and Maccoll (1933), solved here"
+STONE = "Stone (1948), as tabulated by Kopal (1947) and Sims (1964)"
+SUBSONIC_NOTE = (
+    "Mach 1.5, half angle 30 deg: the flow on the cone is subsonic (surface Mach number 0.81), so the base of a finite "
+    "cone acts upstream and the flow is not conical; the exact value belongs to an infinite cone. Shown, not judged."
+)
+
+
+def run(fine: bool, progress: Progress) -> list[Record]:
+    """Surface Cp, C_N_alpha, C_m_alpha and their lateral twins on nine cones.
+
+    Args:
+        fine: 100 wall cells along the cone instead of 40.
+        progress: told what runs.
+    """
+    records = []
+    for index, angle_deg in enumerate(HALF_ANGLES_DEG):
+        progress(f"half angle {angle_deg:g} deg", index / len(HALF_ANGLES_DEG))
+        records += cone_records(math.radians(angle_deg), MACHS, cell=0.01 if fine else 0.025)
+    return records
+
+
+def cone_records(half_angle: float, machs: tuple[float, ...], cell: float) -> list[Record]:
+    """Records of one cone of unit length at each Mach number; `half_angle` rad, wall `cell` m."""
+    surface = bodies.cone(half_angle)
+    mach = np.repeat(machs, 3)
+    alpha, beta = np.tile([0.0, STEP, 0.0], len(machs)), np.tile([0.0, 0.0, STEP], len(machs))
+    solution = solve_body(surface, cell, FlowConditions(mach, alpha, beta))
+    area = math.pi * math.tan(half_angle) ** 2
+    coefficients = integrate(solution, reference_of(area, 1.0)).sel(part="total")
+    cp = surface_cp(solution)
+    records = []
+    for row, number in enumerate(machs):
+        zero, pitch, yaw = (coefficients.isel(condition=3 * row + k) for k in range(3))
+        slopes = {
+            "C_N_alpha": float(pitch.CN - zero.CN) / STEP,
+            "C_m_alpha": float(pitch.Cm - zero.Cm) / STEP,
+            "C_Y_beta": _side_force(yaw) / STEP,
+            "C_n_beta": float(yaw.Cn - zero.Cn) / STEP,
+        }
+        good = [solution.records[3 * row + k].good for k in range(3)]
+        records += _of_one(number, half_angle, cp[3 * row] if good[0] else None, slopes if all(good) else {})
+    return records
+
+
+def surface_cp(solution: Solution, window: tuple[float, float] = (0.4, 0.9)) -> np.ndarray:
+    """[condition] area-weighted mean Cp on the forebody between two stations, m from the apex of a cone of 1 m."""
+    wall_x = solution.mesh.wall_center[:, 0]
+    chosen = part_of_wall(solution.mesh, "forebody") & (wall_x > window[0]) & (wall_x < window[1])
+    weight = np.linalg.norm(solution.mesh.wall_area[chosen], axis=1)
+    return np.average(solution.wall_cp()[chosen], axis=0, weights=weight)
+
+
+def _of_one(mach: float, half_angle: float, cp: float | None, slopes: dict[str, float]) -> list[Record]:
+    angle_deg = math.degrees(half_angle)
+    exact = taylor_maccoll(mach, half_angle)
+    gate = exact.surface_mach > 1.0
+    slope = CN_ALPHA_STONE[mach, round(angle_deg, 6)]
+    moment = -slope * center_of_pressure(half_angle)
+    common = dict(
+        case=CASE,
+        condition=f"Mach {mach:g}, half angle {angle_deg:g} deg",
+        kind="relative",
+        gate=gate,
+        note="" if gate else SUBSONIC_NOTE,
+    )
+    rows = [
+        Record(
+            quantity="surface Cp", unit="-", published=exact.surface_cp, computed=cp, band=0.02, source=EXACT, **common
+        )
+    ]
+    published = {"C_N_alpha": slope, "C_m_alpha": moment, "C_Y_beta": -slope, "C_n_beta": -moment}
+    for name, value in published.items():
+        computed = slopes.get(name)
+        rows.append(
+            Record(quantity=name, unit="1/rad", published=value, computed=computed, band=0.05, source=STONE, **common)
+        )
+    return rows
+
+
+def _side_force(values: xr.Dataset) -> float:
+    """Side force along the body's y axis; `CY` lies across the wind, turned by the sideslip."""
+    return float((values.CY - values.CA * math.sin(STEP)) / math.cos(STEP))

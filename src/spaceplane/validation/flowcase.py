@@ -1,0 +1,33 @@
+"""What every flow case does: mesh a body, solve its conditions, find its walls."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from spaceplane.flow.solution import FlowConditions, Solution
+from spaceplane.flow.solve import FlowSettings, solve
+from spaceplane.mesh.generate import generate
+from spaceplane.mesh.mesh import Mesh
+from spaceplane.mesh.settings import MeshSettings
+from spaceplane.vehicle.properties import ReferenceLengths
+from spaceplane.vehicle.surface import Surface
+
+
+def solve_body(surface: Surface, cell: float, conditions: FlowConditions) -> Solution:
+    """Mesh the body with wall cells of `cell` m and solve every condition on the default settings."""
+    return solve(generate(surface, MeshSettings(wall_cell=cell)), conditions, FlowSettings())
+
+
+def reference_of(
+    area: float, length: float, moment_center: tuple[float, float, float] = (0.0, 0.0, 0.0)
+) -> ReferenceLengths:
+    """Reference lengths with one length for chord and span; area m2, length m, moment centre m."""
+    return ReferenceLengths(area=area, chord=length, span=length, moment_center=moment_center)
+
+
+def part_of_wall(mesh: Mesh, part: str) -> np.ndarray:
+    """[wall] whether every piece of the wall face belongs to the part."""
+    foreign = mesh.piece_part != mesh.part_names.index(part)
+    whole = np.ones(len(mesh.wall_cell), bool)
+    whole[mesh.piece_wall[foreign]] = False
+    return whole

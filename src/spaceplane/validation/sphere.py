@@ -1,0 +1,109 @@
+"""Validation case: the sphere from Mach 0.5 to 10."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from spaceplane.aero.integrate import integrate
+from spaceplane.flow.solution import FlowConditions, Solution
+from spaceplane.validation import bodies
+from spaceplane.validation.blunt import DRAG_LOTH, normal_shock_pressure, stagnation_cp, standoff_billig
+from spaceplane.validation.cases import Progress
+from spaceplane.validation.flowcase import part_of_wall, reference_of, solve_body
+from spaceplane.validation.records import Record
+
+CASE = "sphere"
+MACHS = (0.5, 1.5, 2.0, 3.0, 5.0, 10.0)
+RAYLEIGH = "Rayleigh's pitot formula (NACA 1135)"
+BILLIG = "Billig (1967)"
+LOTH = "Loth et al. (2021), Re 1e6"
+DRAG_NOTE = (
+    "Sphere drag: the published values include viscous separation, which an inviscid method does not own. Above Mach 1 "
+    "the pressure on the front half decides; the base part is named separately and is not judged."
+)
+PARADOX = "d'Alembert's paradox"
+PARADOX_NOTE = (
+    "Mach 0.5: an inviscid attached flow has no drag (d'Alembert), so what remains is numerical error; the measured "
+    "0.484 is viscous separation."
+)
+
+
+def run(fine: bool, progress: Progress) -> list[Record]:
+    """Stagnation Cp, shock stand-off and drag of a sphere of radius 1 m.
+
+    Args:
+        fine: 64 wall cells per diameter instead of 32.
+        progress: told what runs.
+    """
+    cell = 2.0 / (64 if fine else 32)
+    progress(f"Mach {', '.join(f'{mach:g}' for mach in MACHS)}", 0.0)
+    zero = np.zeros(len(MACHS))
+    solution = solve_body(bodies.sphere(), cell, FlowConditions(np.array(MACHS), zero, zero))
+    return sphere_records(solution)
+
+
+def sphere_records(solution: Solution) -> list[Record]:
+    """Records of every condition of a solution past `bodies.sphere()`."""
+    coefficients = integrate(solution, reference_of(math.pi, 2.0)).sel(part="total")
+    nose = _nose_cp(solution)
+    records: list[Record] = []
+    for index, mach in enumerate(solution.conditions.mach):
+        values = coefficients.isel(condition=index)
+        good = solution.records[index].good
+        where = f"Mach {mach:g}"
+
+        def row(quantity, published, computed, band, source, kind="relative", where=where, good=good, **more) -> Record:
+            return Record(
+                case=CASE,
+                quantity=quantity,
+                condition=where,
+                unit="-",
+                published=published,
+                computed=float(computed) if good else None,
+                band=band,
+                kind=kind,
+                source=source,
+                **more,
+            )
+
+        records.append(row("stagnation Cp", stagnation_cp(mach), nose[index], 0.03, RAYLEIGH))
+        if mach > 1.0:
+            records.append(
+                row("shock stand-off / radius", standoff_billig(mach), standoff(solution, index), 0.1, BILLIG)
+            )
+            drag = dict(gate=False, note=DRAG_NOTE)
+            records.append(row("C_D", DRAG_LOTH[float(mach)], values.CD, 0.1, LOTH, **drag))
+            records.append(row("C_D of the front half", DRAG_LOTH[float(mach)], values.CA_forebody, 0.1, LOTH, **drag))
+        else:
+            records.append(row("C_D", 0.0, values.CD, 0.02, PARADOX, kind="absolute", note=PARADOX_NOTE))
+    return records
+
+
+def standoff(solution: Solution, condition: int) -> float:
+    """Distance from the nose to the bow shock over the radius of a sphere of radius 1 m about (1, 0, 0).
+
+    The shock is where the pressure on the stagnation line crosses the mean of its values ahead of and behind a normal
+    shock, interpolated linearly between cell centres.
+    """
+    center, mesh = solution.mesh.cell_center, solution.mesh
+    near = (np.hypot(center[:, 1], center[:, 2]) < 1.01 * mesh.cell_size) & (center[:, 0] < 0.0)
+    x, first = np.unique(np.round(center[near, 0], 9), return_inverse=True)
+    pressure = solution.state[near, 4, condition].astype(float)
+    pressure = np.bincount(first, pressure) / np.bincount(first)
+    gamma = solution.conditions.gamma
+    middle = 0.5 * (1.0 + normal_shock_pressure(float(solution.conditions.mach[condition]), gamma)) / gamma
+    above = np.flatnonzero(pressure > middle)
+    if not len(above) or above[0] == 0:
+        return math.nan
+    k = above[0]
+    crossing = x[k - 1] + (x[k] - x[k - 1]) * (middle - pressure[k - 1]) / (pressure[k] - pressure[k - 1])
+    return float(-crossing)
+
+
+def _nose_cp(solution: Solution) -> np.ndarray:
+    """[condition] mean Cp of the four wall faces nearest to the stagnation point."""
+    center = solution.mesh.wall_center
+    distance = np.hypot(center[:, 1], center[:, 2]) + 1e6 * ~part_of_wall(solution.mesh, "forebody")
+    return solution.wall_cp()[np.argsort(distance)[:4]].mean(axis=0)
