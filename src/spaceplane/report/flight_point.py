@@ -1,0 +1,207 @@
+"""What the report says about one flight point, ready for the template."""
+
+from __future__ import annotations
+
+from markupsafe import Markup, escape
+
+from spaceplane.report.names import GREEK, STATES, symbol, words
+from spaceplane.report.numbers import MISSING, duration, fixed, grouped, is_number, measured, number
+from spaceplane.report.plots import convergence_plot, derivative_bars, eigenvalue_planes, eigenvalue_text, phase_clock
+from spaceplane.report.read import level_text
+
+LEVEL_CSS = {1: "good", 2: "fair", 3: "poor", "below 3": "bad"}
+VERDICT_CSS = {"converged": "good", "oscillating": "fair", "failed": "bad"}
+PART_COEFFICIENTS = ("CL", "CD", "CY", "Cl", "Cm", "Cn")
+BARS = ("CL_alpha", "CD_alpha", "Cm_alpha", "CY_beta", "Cl_beta", "Cn_beta")
+
+
+def level_css(level: int | str | None) -> str:
+    """Colour class of a level."""
+    return LEVEL_CSS.get(level, "")
+
+
+def point(p: dict) -> dict:
+    """Everything the templates show about flight point `p` of result.json."""
+    coefficients = p.get("coefficients") or {}
+    modes = p.get("modes") or []
+    verdicts = p.get("verdicts") or []
+    return {
+        "name": p["name"],
+        "summary": f"{fixed(_in(p, 'altitude_m', 1e-3), 1)} km, α {fixed(p.get('alpha_deg'), 1)}°, "
+        f"{fixed(p.get('velocity_ms'), 0)} m/s",
+        "figures": [(Markup(symbol(name)), number(coefficients.get(name), 3)) for name in ("CL", "CD", "L_over_D")]
+        + [
+            (Markup(symbol(name)), number(((p.get("derivatives") or {}).get(name) or {}).get("value"), 3))
+            for name in ("Cm_alpha", "Cn_beta", "Cl_beta")
+        ],
+        "level_chips": _level_chips(verdicts),
+        **_validity(p),
+        "alpha_source": p.get("alpha_source") or "",
+        **_parts(p),
+        "derivative_bars": _derivative_bars(p),
+        "planes": Markup(eigenvalue_planes(modes)),
+        "modes": [_mode(m) for m in modes],
+        **_eigenvectors(p, modes),
+        "verdicts": [_verdict(v) for v in verdicts],
+        "convergence": [_convergence(r) for r in p.get("convergence") or []],
+    }
+
+
+def _in(record: dict, key: str, factor: float) -> float | None:
+    value = record.get(key)
+    return value * factor if is_number(value) else None
+
+
+def _level_chips(verdicts: list[dict]) -> list[dict]:
+    """One chip a mode: its worst applicable level."""
+    rank = {1: 1, 2: 2, 3: 3, "below 3": 4}
+    worst: dict[str, dict] = {}
+    for v in verdicts:
+        level = v.get("level") if v.get("applicable", True) else None
+        known = worst.get(v["mode"])
+        if known is None or rank.get(level, 0) > rank.get(known["level"], 0):
+            worst[v["mode"]] = {"level": level, "title": v.get("criterion") or ""}
+    chips = []
+    for mode, record in worst.items():
+        text = "n/a" if record["level"] is None else level_text(record["level"])
+        chips.append({"css": level_css(record["level"]), "text": f"{mode}: {text}", "title": record["title"]})
+    return chips
+
+
+def _validity(p: dict) -> dict:
+    validity = p.get("validity") or {}
+    chips = []
+    for key, yes, no in (("continuum", "continuum", "not a continuum"), ("ideal_gas", "ideal gas", "real-gas effects")):
+        if key in validity and validity[key] is not None:
+            chips.append(("good", yes) if validity[key] else ("fair", no))
+    return {"validity": chips, "validity_notes": list(validity.get("notes") or [])}
+
+
+def _parts(p: dict) -> dict:
+    by_part = p.get("coefficients_by_part") or {}
+    columns = [c for c in PART_COEFFICIENTS if any(c in row for row in by_part.values())]
+    largest = {c: max((abs(row[c]) for row in by_part.values() if is_number(row.get(c))), default=0.0) for c in columns}
+    rows = []
+    for part, values in by_part.items():
+        cells = []
+        for c in columns:
+            value = values.get(c)
+            share = abs(value) / largest[c] if is_number(value) and largest[c] > 1e-7 else 0.0
+            cells.append({"text": fixed(value, 5), "heat": f"{0.22 * share:.3f}"})
+        rows.append({"name": words(part), "cells": cells})
+    return {"part_rows": rows, "part_symbols": [Markup(symbol(c)) for c in columns]}
+
+
+def _derivative_bars(p: dict) -> list[tuple[Markup, Markup]]:
+    found = []
+    for name in BARS:
+        by_part = ((p.get("derivatives") or {}).get(name) or {}).get("by_part") or {}
+        svg = derivative_bars([(words(part), value) for part, value in by_part.items()])
+        if svg:
+            found.append((Markup(symbol(name)), Markup(svg)))
+    return found
+
+
+def time_text(mode: dict) -> str:
+    """Half time or double time in words; a dash for neither."""
+    if is_number(mode.get("half_time_s")):
+        return f"half {duration(mode['half_time_s'])}"
+    if is_number(mode.get("double_time_s")):
+        return f"double {duration(mode['double_time_s'])}"
+    return MISSING
+
+
+def _mode(mode: dict) -> dict:
+    return {
+        "name": mode["name"],
+        "grows": mode["eigenvalue"][0] > 0,
+        "eigenvalue": eigenvalue_text(mode["eigenvalue"]),
+        "period": duration(mode.get("period_s")),
+        "time": time_text(mode),
+        "damping": number(mode.get("damping_ratio"), 3),
+        "frequency": number(mode.get("natural_frequency_rads"), 3),
+        "explanation": mode.get("explanation") or "",
+    }
+
+
+def _eigenvectors(p: dict, modes: list[dict]) -> dict:
+    states = p.get("states") or next((list(m["eigenvector"]) for m in modes if m.get("eigenvector")), [])
+    rows = []
+    for mode in modes:
+        vector = mode.get("eigenvector") or {}
+        participation = mode.get("participation") or {}
+        largest = max((entry["magnitude"] for entry in vector.values() if is_number(entry.get("magnitude"))), default=0)
+        cells = []
+        for state in states:
+            entry, share = vector.get(state) or {}, participation.get(state)
+            magnitude, phase = entry.get("magnitude"), entry.get("phase_deg")
+            visible = is_number(magnitude) and largest > 0 and magnitude > 0.005 * largest
+            share_text = f", participation {number(share, 3)}" if is_number(share) else ""
+            cells.append(
+                {
+                    "clock": Markup(phase_clock(magnitude / largest, phase or 0.0)) if visible else "",
+                    "magnitude": number(magnitude, 3),
+                    "phase": f"{fixed(phase, 0)}°" if visible and is_number(phase) else "",
+                    "heat": f"{0.30 * min(abs(share), 1.0):.3f}" if is_number(share) else "0",
+                    "title": f"{STATES.get(state, state)}: {number(magnitude, 4)} at {fixed(phase, 1)}°{share_text}",
+                }
+            )
+        rows.append({"name": mode["name"], "grows": mode["eigenvalue"][0] > 0, "cells": cells})
+    shown = any(mode.get("eigenvector") for mode in modes)
+    return {
+        "states": [(GREEK.get(s, s), STATES.get(s, s)) for s in states],
+        "eigenvectors": rows if shown else [],
+        "eigenvector_note": "",
+    }
+
+
+def _verdict(v: dict) -> dict:
+    limits = v.get("limits") or {}
+    where = ", ".join(str(v[k]) for k in ("vehicle_class", "category") if v.get(k))
+    margin = v.get("margin")
+    return {
+        "mode": v["mode"],
+        "criterion": v.get("criterion") or "",
+        "paragraph": v.get("paragraph") or "",
+        "where": where,
+        "value": number(v.get("value"), 4),
+        "unit": v.get("unit") or "",
+        "limits": [_limit(limits.get(k)) for k in ("1", "2", "3")],
+        "level": v.get("level") if v.get("applicable", True) else None,
+        "margin": f"{fixed(100 * margin, 0)} %" if is_number(margin) else MISSING,
+        "note": v.get("note") or "",
+    }
+
+
+def _limit(limit: object) -> str:
+    """A limit as given: a number, a pair (range), or text."""
+    if isinstance(limit, list | tuple):
+        low, high = [*limit, None, None][:2]
+        if is_number(low) and is_number(high):
+            return f"{number(low, 3)} to {number(high, 3)}"
+        return f"≥ {number(low, 3)}" if is_number(low) else f"≤ {number(high, 3)}" if is_number(high) else MISSING
+    if isinstance(limit, dict):
+        return _limit([limit.get("lower", limit.get("min")), limit.get("upper", limit.get("max"))])
+    return str(limit) if isinstance(limit, str) else number(limit, 3)
+
+
+def _convergence(record: dict) -> dict:
+    spread = record.get("window_spread") or {}
+    pieces = [
+        f"M {number(record.get('mach'), 3)}, α {fixed(record.get('alpha_deg'), 2)}°, β {fixed(record.get('beta_deg'), 1)}°",
+        f"{fixed(record.get('residual_drop'), 1)} decades in {grouped(record.get('iterations'))} iterations",
+    ]
+    if any(is_number(v) for v in spread.values()):
+        pieces.append(
+            "last window: "
+            + ", ".join(f"{escape(k)} {measured(0.0, v).error or number(v, 2)}" for k, v in spread.items())
+        )
+    if record.get("reason"):
+        pieces.append(record["reason"])
+    return {
+        "label": record.get("label") or "",
+        "verdict": record.get("verdict") or "",
+        "css": VERDICT_CSS.get(record.get("verdict"), ""),
+        "svg": Markup(convergence_plot(record)),
+        "text": " · ".join(pieces),
+    }

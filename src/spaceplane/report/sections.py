@@ -1,0 +1,280 @@
+"""What the report says about a whole analysis, ready for the template."""
+
+from __future__ import annotations
+
+import json
+
+from markupsafe import Markup
+
+from spaceplane import __version__
+from spaceplane.report.flight_point import level_css, point
+from spaceplane.report.names import COEFFICIENTS, meaning, split_derivative, stability, symbol, words
+from spaceplane.report.numbers import Measured, duration, fixed, grouped, is_number, measured, number
+from spaceplane.report.plots import range_bar
+
+__all__ = ["level_css", "point", "whole", "words"]
+
+FLIGHT_ROWS = (
+    ("Mach number", "", "mach", 1.0, 3),
+    ("Altitude", "km", "altitude_m", 1e-3, 4),
+    ("Angle of attack", "deg", "alpha_deg", 1.0, 4),
+    ("Sideslip", "deg", "beta_deg", 1.0, 3),
+    ("Flight-path angle", "deg", "gamma_deg", 1.0, 4),
+    ("Bank angle", "deg", "bank_deg", 1.0, 4),
+    ("Speed", "m/s", "velocity_ms", 1.0, 5),
+    ("Dynamic pressure", "kPa", "dynamic_pressure_Pa", 1e-3, 4),
+    ("Pressure", "Pa", "pressure_Pa", 1.0, 5),
+    ("Temperature", "K", "temperature_K", 1.0, 5),
+    ("Density", "kg/m³", "density_kgm3", 1.0, 4),
+    ("Knudsen number", "", "knudsen", 1.0, 3),
+    ("Compressibility factor", "", "compressibility_factor", 1.0, 5),
+)
+RATES = (("Roll rate", "p_rads"), ("Pitch rate", "q_rads"), ("Yaw rate", "r_rads"))
+VARIABLE_GROUPS = (("alpha", "Angle of attack"), ("beta", "Sideslip"), ("M", "Mach number"), ("mach", "Mach number"))
+MESH_ROWS = (
+    ("Cells", "cells"),
+    ("Split cells", "split_cells"),
+    ("Merged cells", "merged_cells"),
+)
+
+
+def whole(result: dict) -> dict:
+    """Template values that concern the vehicle, all flight points together, the mesh and the settings."""
+    points = result["flight_points"]
+    vehicle = result["vehicle"]
+    return {
+        "version": result.get("version") or __version__,
+        "created": (result.get("created") or "").replace("T", " ")[:16],
+        "vehicle": vehicle,
+        "lead": _lead(result),
+        "chips": _chips(result),
+        "warnings": warnings(result),
+        "flight_rows": _flight_rows(points),
+        "coefficient_rows": _coefficient_rows(points),
+        "derivative_groups": _derivative_groups(points),
+        "reference": _reference(vehicle.get("reference") or {}),
+        "mesh_rows": _mesh_rows(result),
+        "time_rows": _time_rows(result),
+        "shape_rows": _shape_rows(vehicle.get("shape") or {}),
+        "vehicle_tables": _vehicle_tables(vehicle),
+        "settings": json.dumps(result.get("settings") or {}, indent=2, ensure_ascii=False),
+    }
+
+
+def unconverged(result: dict) -> list[tuple[str, dict]]:
+    """(flight point name, record) of each condition that did not converge."""
+    return [
+        (p["name"], record)
+        for p in result["flight_points"]
+        for record in p.get("convergence") or []
+        if record.get("verdict") != "converged"
+    ]
+
+
+def warnings(result: dict) -> list[str]:
+    """The result's own warnings, the mesh's, and one for each condition that did not converge."""
+    found = list(result.get("warnings") or [])
+    found += [w for w in (result.get("mesh") or {}).get("warnings") or [] if w not in found]
+    for name, record in unconverged(result):
+        reason = f": {record['reason']}" if record.get("reason") else ""
+        text = f"{name}, condition {record.get('label')}: {record.get('verdict')}{reason}"
+        if not any(name in w and str(record.get("label")) in w for w in found):
+            found.append(text)
+    return found
+
+
+def _lead(result: dict) -> str:
+    geometry = result["vehicle"].get("geometry") or {}
+    deflections = result["vehicle"].get("deflections_deg") or {}
+    pieces = []
+    if is_number(geometry.get("length_m")):
+        pieces.append(
+            f"{fixed(geometry['length_m'], 1)} m long, {fixed(geometry.get('span_m'), 1)} m in span, "
+            f"{fixed(geometry.get('height_m'), 1)} m high."
+        )
+    if deflections:
+        moved = [f"{words(k)} {number(v, 3)}°" for k, v in deflections.items() if v]
+        pieces.append("Deflections: " + (", ".join(moved) if moved else "none") + ".")
+    names = [p["name"] for p in result["flight_points"]]
+    if names:
+        pieces.append(f"Analysed at {', '.join(names[:-1]) + ' and ' if names[1:] else ''}{names[-1]}.")
+    return " ".join(pieces)
+
+
+def _chips(result: dict) -> list[tuple[str, str]]:
+    records = [r for p in result["flight_points"] for r in p.get("convergence") or []]
+    bad = len(unconverged(result))
+    chips = []
+    if records:
+        chips.append(
+            ("good", f"all {len(records)} conditions converged")
+            if not bad
+            else ("bad", f"{bad} of {len(records)} conditions not converged")
+        )
+    cells = (result.get("mesh") or {}).get("cells")
+    if cells:
+        chips.append(("", f"{grouped(cells)} cells"))
+    solver = result.get("solver") or {}
+    if solver.get("precision"):
+        chips.append(("", str(solver["precision"])))
+    total = total_seconds(result)
+    if total:
+        chips.append(("", f"computed in {duration(total)}"))
+    return chips
+
+
+def total_seconds(result: dict) -> float | None:
+    """Seconds of mesh and flow together, as far as recorded."""
+    parts = [(result.get("mesh") or {}).get("seconds"), (result.get("solver") or {}).get("seconds")]
+    known = [s for s in parts if is_number(s)]
+    return sum(known) if known else None
+
+
+def _flight_rows(points: list[dict]) -> list[dict]:
+    rows = []
+    for name, unit, key, factor, digits in FLIGHT_ROWS:
+        values = [p.get(key) for p in points]
+        if any(is_number(v) for v in values):
+            cells = [number(v * factor, digits) if is_number(v) else number(None) for v in values]
+            rows.append({"name": name, "unit": unit, "cells": cells})
+    for name, key in RATES:
+        values = [(p.get("equilibrium") or {}).get(key) for p in points]
+        if any(is_number(v) for v in values):
+            rows.append({"name": f"{name} in equilibrium", "unit": "rad/s", "cells": [number(v, 3) for v in values]})
+    return rows
+
+
+def _coefficient_rows(points: list[dict]) -> list[dict]:
+    rows = []
+    for name, (what, axes) in COEFFICIENTS.items():
+        values = [(p.get("coefficients") or {}).get(name) for p in points]
+        if any(is_number(v) for v in values):
+            text = f"{what} ({axes})" if axes else what
+            rows.append({"symbol": Markup(symbol(name)), "what": text, "cells": [_coefficient(v) for v in values]})
+    return rows
+
+
+def _coefficient(value: float | None) -> str:
+    """Four significant digits, but never below the fifth decimal: smaller is noise."""
+    return fixed(value, 5) if is_number(value) and abs(value) < 0.1 else number(value, 4)
+
+
+def _derivative_groups(points: list[dict]) -> list[dict]:
+    names = list(dict.fromkeys(name for p in points for name in p.get("derivatives") or {}))
+    grouped_names: dict[str, list[str]] = {}
+    labels = dict(VARIABLE_GROUPS)
+    for name in names:
+        parts = split_derivative(name)
+        title = labels.get(parts.variable) or ("Rates" if not parts.control else f"Control: {words(parts.variable)}")
+        grouped_names.setdefault(title, []).append(name)
+    return [
+        {"name": title, "rows": [_derivative_row(n, points) for n in group]} for title, group in grouped_names.items()
+    ]
+
+
+def _derivative_row(name: str, points: list[dict]) -> dict:
+    records = [(p.get("derivatives") or {}).get(name) or {} for p in points]
+    cells = [{"m": _measured(r), "sign": stability(name, r.get("value"), r.get("error"))} for r in records]
+    first = next((r for r in records if r), {})
+    step = f"; step {number(first['step'], 3)} {first.get('step_unit') or ''}" if is_number(first.get("step")) else ""
+    return {
+        "symbol": Markup(symbol(name)),
+        "what": meaning(name),
+        "unit": first.get("unit") or "",
+        "title": f"{name}{step}",
+        "cells": cells,
+    }
+
+
+def _measured(record: dict) -> Measured:
+    return measured(record.get("value"), record.get("error"))
+
+
+def _reference(reference: dict) -> dict:
+    center = reference.get("moment_center_m") or [None] * 3
+    return {
+        "area": number(reference.get("area_m2"), 5),
+        "chord": number(reference.get("c_ref_m"), 5),
+        "span": number(reference.get("b_ref_m"), 5),
+        "center": [number(v, 4) for v in center],
+    }
+
+
+def _mesh_rows(result: dict) -> list[tuple[str, str]]:
+    mesh = result.get("mesh") or {}
+    rows = [(label, grouped(mesh[key])) for label, key in MESH_ROWS if is_number(mesh.get(key))]
+    if is_number(mesh.get("wall_cell_m")):
+        rows.insert(1, ("Cell at the wall", f"{number(mesh['wall_cell_m'], 3)} m"))
+    for label, key in (("Error of the wetted area", "area_error"), ("Error of the volume", "volume_error")):
+        if is_number(mesh.get(key)):
+            rows.append((label, number(mesh[key], 2)))
+    conditions = (result.get("solver") or {}).get("conditions")
+    if is_number(conditions):
+        rows.append(("Flow conditions on it", grouped(conditions)))
+    return rows
+
+
+def _time_rows(result: dict) -> list[tuple[str, str, float]]:
+    solver = result.get("solver") or {}
+    phases = {"mesh": (result.get("mesh") or {}).get("seconds")} | (solver.get("seconds_by_phase") or {})
+    if not any(is_number(v) for k, v in phases.items() if k != "mesh"):
+        phases["flow"] = solver.get("seconds")
+    phases = {k: v for k, v in phases.items() if is_number(v)}
+    largest = max(phases.values(), default=1.0) or 1.0
+    return [(words(k).capitalize(), duration(v), round(100 * v / largest, 1)) for k, v in phases.items()]
+
+
+def _shape_rows(shape: dict) -> list[dict]:
+    rows = []
+    for name, record in shape.items():
+        record = record if isinstance(record, dict) else {"value": record}
+        value, lower, upper = record.get("value"), record.get("lower"), record.get("upper")
+        known = all(is_number(v) for v in (value, lower, upper))
+        bar = range_bar(value, lower, upper, record.get("default")) if known else ""
+        unit = record.get("unit") or ""
+        limits = f"{number(lower)} to {number(upper)}" if known else "no limits"
+        label = words(name.removesuffix(f"_{unit}") if unit else name)
+        rows.append(
+            {
+                "name": label,
+                "value": number(value, 4) if is_number(value) else str(value),
+                "unit": unit,
+                "bar": Markup(bar),
+                "title": f"{name}: {limits}, default {number(record.get('default'))}",
+            }
+        )
+    return rows
+
+
+def _vehicle_tables(vehicle: dict) -> list[tuple[str, list[tuple[str, str, str]]]]:
+    mass, reference = vehicle.get("mass") or {}, vehicle.get("reference") or {}
+    geometry, deflections = vehicle.get("geometry") or {}, vehicle.get("deflections_deg") or {}
+    tables = [
+        ("Deflections", [(words(k), number(v, 4), "deg") for k, v in deflections.items()]),
+        (
+            "Mass properties",
+            [("Mass", number(mass.get("mass_kg"), 6), "kg")]
+            + [(f"I{a}{a}", number(mass.get(f"I{a}{a}_kgm2"), 6), "kg m²") for a in "xyz"],
+        ),
+        (
+            "Reference lengths",
+            [
+                ("Area S", number(reference.get("area_m2"), 5), "m²"),
+                ("Chord c", number(reference.get("c_ref_m"), 5), "m"),
+                ("Span b", number(reference.get("b_ref_m"), 5), "m"),
+                ("Moment centre x, y, z", ", ".join(_reference(reference)["center"]), "m"),
+            ],
+        ),
+        (
+            "Geometry",
+            [
+                ("Length", number(geometry.get("length_m"), 4), "m"),
+                ("Span", number(geometry.get("span_m"), 4), "m"),
+                ("Height", number(geometry.get("height_m"), 4), "m"),
+                ("Wetted area", number(geometry.get("wetted_area_m2"), 4), "m²"),
+                ("Volume", number(geometry.get("volume_m3"), 4), "m³"),
+                ("Triangles", grouped(geometry.get("triangles")), ""),
+            ],
+        ),
+    ]
+    return [(title, rows) for title, rows in tables if rows]
