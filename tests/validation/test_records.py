@@ -23,6 +23,14 @@ def test_relative_and_absolute_deviation():
     assert record(0.205, kind="absolute").deviation == pytest.approx(0.005)
 
 
+def test_rounding_of_the_published_value_is_always_allowed():
+    assert record(-0.026, published=-0.02, band=0.2).verdict == "fail"
+    assert record(-0.026, published=-0.02, band=0.2, floor=0.007).verdict == "pass"
+    zero = record(0.0004, published=0.0, floor=0.0005)
+    assert zero.deviation is None and zero.verdict == "pass"
+    assert record(0.0006, published=0.0, floor=0.0005).verdict == "fail"
+
+
 @pytest.mark.parametrize("missing", [None, float("nan"), float("inf")])
 def test_an_unconverged_value_never_passes(missing):
     assert record(missing).verdict == "fail"

@@ -26,6 +26,7 @@ class Record:
         band: allowed deviation, in `unit` for kind "absolute", else as a fraction of the published value.
         kind: "relative" or "absolute".
         source: author, year, table or equation of the published value.
+        floor: absolute difference that is always allowed, in `unit`: the rounding of the published value.
         gate: whether a deviation beyond the band fails the case. A record with `gate=False` is shown, not judged.
         note: what a reader must know about this row; empty when nothing.
     """
@@ -39,13 +40,14 @@ class Record:
     band: float
     kind: str
     source: str
+    floor: float = 0.0
     gate: bool = True
     note: str = ""
 
     @property
     def deviation(self) -> float | None:
-        """Computed minus published; relative to the published value for kind "relative"."""
-        if self.computed is None:
+        """Computed minus published, for kind "relative" as a fraction of the published value; None where undefined."""
+        if self.computed is None or (self.kind == "relative" and self.published == 0.0):
             return None
         difference = self.computed - self.published
         return difference if self.kind == "absolute" else difference / abs(self.published)
@@ -53,8 +55,10 @@ class Record:
     @property
     def within(self) -> bool:
         """Whether the deviation lies inside the band; an unconverged value never does."""
-        deviation = self.deviation
-        return deviation is not None and math.isfinite(deviation) and abs(deviation) <= self.band
+        if self.computed is None or not math.isfinite(self.computed):
+            return False
+        allowed = self.band if self.kind == "absolute" else self.band * abs(self.published)
+        return abs(self.computed - self.published) <= max(allowed, self.floor)
 
     @property
     def verdict(self) -> str:
