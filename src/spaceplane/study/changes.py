@@ -1,0 +1,187 @@
+"""What changes when the shape changes: tidy rows from two results, flight point by flight point."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
+
+from spaceplane.study.matching import match_modes
+from spaceplane.study.thesis import DERIVATIVES
+
+COEFFICIENTS = ("CL", "CD", "Cm", "L_over_D")
+MODE_FIGURES = {
+    "real": ("real part", "1/s"),
+    "imaginary": ("imaginary part", "1/s"),
+    "damping_ratio": ("damping ratio", "-"),
+    "natural_frequency": ("natural frequency", "rad/s"),
+}
+LEVEL_BELOW_3 = 4
+"""Stands for "below 3" where levels are numbers."""
+
+_LATERAL_STATES = ("beta", "p", "r", "sigma")
+
+
+@dataclass(frozen=True)
+class Change:
+    """One quantity of a changed shape beside the default's.
+
+    Attributes:
+        parameter: what was changed, with its unit.
+        side: "low" or "high" of the default.
+        parameter_value: m or deg.
+        parameter_default: m or deg.
+        mach: flight point.
+        kind: "coefficient", "derivative", "mode" or "level".
+        quantity: name; modes as "Dutch roll: damping ratio", levels as "Dutch roll: criterion".
+        unit: of value, default and change.
+        value: of the changed shape; None where it does not exist.
+        default: of the default shape; None where it does not exist.
+        error: numerical error of the value as the derivative's step sizes show it; None where not estimated.
+        flow: "converged", "oscillating" or "failed": the worst condition of the two flows at this flight point.
+    """
+
+    parameter: str
+    side: str
+    parameter_value: float
+    parameter_default: float
+    mach: float
+    kind: str
+    quantity: str
+    unit: str
+    value: float | None
+    default: float | None
+    error: float | None
+    flow: str
+
+    @property
+    def change(self) -> float | None:
+        """Value less default."""
+        return None if self.value is None or self.default is None else self.value - self.default
+
+    @property
+    def relative_percent(self) -> float | None:
+        """Change relative to the size of the default, %."""
+        return None if self.change is None or not self.default else 100.0 * self.change / abs(self.default)
+
+    @property
+    def rpd_percent(self) -> float | None:
+        """Relative percent difference, thesis (7.1): change relative to the mean of the two sizes, -200 to 200 %."""
+        if self.change is None:
+            return None
+        size = abs(self.value) + abs(self.default)
+        return 200.0 * self.change / size if size else 0.0
+
+    def as_row(self) -> dict:
+        """Return the fields and the three changes, one flat row."""
+        extra = ("change", "relative_percent", "rpd_percent")
+        return asdict(self) | {name: getattr(self, name) for name in extra}
+
+
+def changes(
+    parameter: str, side: str, parameter_value: float, parameter_default: float, result: dict, default: dict
+) -> list[Change]:
+    """Compare a changed shape's result with the default's at every flight point that both have.
+
+    Args:
+        parameter, side, parameter_value, parameter_default: what was changed, see `Change`.
+        result, default: two result.json.
+    """
+    references = {point["mach"]: point for point in default["flight_points"]}
+    rows = []
+    for point in result["flight_points"]:
+        reference = references.get(point["mach"])
+        if reference is None:
+            continue
+        flow = worst_flow(point, reference)
+        for kind, quantity, unit, value, base, error in _quantities(point, reference):
+            rows.append(
+                Change(
+                    parameter,
+                    side,
+                    parameter_value,
+                    parameter_default,
+                    point["mach"],
+                    kind,
+                    quantity,
+                    unit,
+                    value,
+                    base,
+                    error,
+                    flow,
+                )
+            )
+    return rows
+
+
+def worst_flow(*points: dict) -> str:
+    """Return the worst convergence verdict among all conditions of some flight points."""
+    order = ("converged", "oscillating", "failed")
+    verdicts = [record["verdict"] for point in points for record in point["convergence"]]
+    return max(verdicts, key=order.index, default="failed")
+
+
+def lateral_oscillation(modes: list[dict]) -> dict | None:
+    """Return the lateral oscillation (Dutch roll): the fastest oscillation in which sideslip, roll and yaw move."""
+    lateral = [mode for mode in modes if mode["oscillatory"] and _lateral_share(mode) > 0.5]
+    return max(lateral, key=lambda mode: abs(complex(*mode["eigenvalue"])), default=None)
+
+
+def most_unstable(modes: list[dict]) -> dict | None:
+    """Return the mode with the greatest real part."""
+    return max(modes, key=lambda mode: mode["eigenvalue"][0], default=None)
+
+
+def mode_figure(mode: dict | None, figure: str) -> float | None:
+    """Return one figure of a mode, see `MODE_FIGURES`; None where it has none."""
+    if mode is None:
+        return None
+    if figure == "real":
+        return mode["eigenvalue"][0]
+    if figure == "imaginary":
+        return abs(mode["eigenvalue"][1])
+    return mode["damping_ratio" if figure == "damping_ratio" else "natural_frequency_rads"]
+
+
+def level_number(level: int | str | None) -> int | None:
+    """Return 1, 2, 3, 4 for "below 3", or None where no level applies."""
+    return LEVEL_BELOW_3 if level == "below 3" else level
+
+
+def _quantities(point: dict, reference: dict) -> Iterator[tuple]:
+    for name in COEFFICIENTS:
+        yield "coefficient", name, "-", point["coefficients"].get(name), reference["coefficients"].get(name), None
+    for name in DERIVATIVES:
+        mine, base = point["derivatives"].get(name, {}), reference["derivatives"].get(name, {})
+        unit = "-" if name.endswith("_M") else "1/rad"
+        yield "derivative", name, unit, mine.get("value"), base.get("value"), mine.get("error")
+    yield from _mode_quantities(point, reference)
+    yield from _level_quantities(point, reference)
+
+
+def _mode_quantities(point: dict, reference: dict) -> Iterator[tuple]:
+    base, mine = reference["modes"], point["modes"]
+    named = [
+        ("greatest real part", most_unstable(mine), most_unstable(base)),
+        ("lateral oscillation", lateral_oscillation(mine), lateral_oscillation(base)),
+    ]
+    for pair in match_modes(base, mine, reference["velocity_ms"], point["velocity_ms"]):
+        before = None if pair.first is None else base[pair.first]
+        after = None if pair.second is None else mine[pair.second]
+        named.append((before["name"] if before else f"new: {after['name']}", after, before))
+    for name, after, before in named:
+        for figure, (label, unit) in MODE_FIGURES.items():
+            yield "mode", f"{name}: {label}", unit, mode_figure(after, figure), mode_figure(before, figure), None
+
+
+def _level_quantities(point: dict, reference: dict) -> Iterator[tuple]:
+    mine = {(verdict["mode"], verdict["criterion"]): verdict for verdict in point["verdicts"]}
+    base = {(verdict["mode"], verdict["criterion"]): verdict for verdict in reference["verdicts"]}
+    for key in dict.fromkeys([*base, *mine]):
+        levels = [level_number(side[key]["level"]) if key in side else None for side in (mine, base)]
+        yield "level", f"{key[0]}: {key[1]}", "level", *levels, None
+
+
+def _lateral_share(mode: dict) -> float:
+    shares = {state: abs(value or 0.0) for state, value in mode["participation"].items()}
+    total = sum(shares.values())
+    return sum(shares.get(state, 0.0) for state in _LATERAL_STATES) / total if total else 0.0

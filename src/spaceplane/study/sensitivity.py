@@ -1,0 +1,224 @@
+"""One shape parameter at a time: how derivatives, modes and levels answer."""
+
+from __future__ import annotations
+
+import csv
+import json
+from collections.abc import Callable
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+
+from spaceplane import __version__
+from spaceplane.errors import InputError
+from spaceplane.study import thesis
+from spaceplane.study.cases import SensitivityStudy, nearest
+from spaceplane.study.changes import Change, changes
+from spaceplane.study.execute import Case, Evaluate, Failure, Progress, execute
+from spaceplane.study.keys import code_fingerprint
+from spaceplane.study.shapes import ParameterRange, case_inputs, evaluate, parameter_ranges
+
+SCHEMA = "spaceplane.sensitivity"
+SCHEMA_VERSION = 1
+
+
+@dataclass(frozen=True)
+class Variation:
+    """One changed shape of a study.
+
+    Attributes:
+        parameter: shape parameter, with its unit.
+        side: "low" or "high".
+        value: m or deg.
+        range: the parameter's default and limits.
+    """
+
+    parameter: str
+    side: str
+    value: float
+    range: ParameterRange
+
+    @property
+    def label(self) -> str:
+        """What a person calls it."""
+        return f"{self.parameter} = {self.value:g} ({self.side})"
+
+
+@dataclass(frozen=True)
+class SensitivityResult:
+    """What a study found.
+
+    Attributes:
+        study: what was asked.
+        default: result of the default shape (as result.json).
+        variations: the changed shapes that have a result.
+        results: [variation] their results.
+        rows: every quantity of every changed shape beside the default's.
+        agreement: our changes beside the thesis's, see `thesis.agreement`.
+        failures: cases without a result.
+        files: what was written, by what it holds.
+        computed, reused: cases computed now, and found in the store.
+        seconds: wall-clock time, s.
+    """
+
+    study: SensitivityStudy
+    default: dict
+    variations: tuple[Variation, ...]
+    results: tuple[dict, ...]
+    rows: tuple[Change, ...]
+    agreement: tuple[dict, ...]
+    failures: tuple[Failure, ...]
+    files: dict[str, Path]
+    computed: int
+    reused: int
+    seconds: float
+
+
+def run(
+    study: SensitivityStudy,
+    store_path: Path | str,
+    out_dir: Path | str,
+    progress: Callable[[Progress], None] | None = None,
+    workers: int | None = None,
+    evaluate: Evaluate = evaluate,
+    plots: bool = True,
+) -> SensitivityResult:
+    """Compute what the store lacks of a study, then write tables and plots.
+
+    Args:
+        study: what to vary, see `cases.load_study`.
+        store_path: the result store; a study that was cut short goes on from it.
+        out_dir: folder for sensitivity.csv, sensitivity.json, agreement.csv and the plots.
+        progress: called on every change of the count of finished cases.
+        workers: processes that compute at once; the study's own number by default.
+        evaluate: from a case's inputs to a result as in result.json; the pipeline by default.
+        plots: draw the plots too.
+
+    Raises:
+        InputError: an unknown parameter, a value out of limits, a damaged store, a folder that cannot be written, or
+            the default shape itself has no result.
+        KeyboardInterrupt: as `execute.execute`; run again to go on.
+    """
+    out_dir = _folder(out_dir)
+    variations = plan(study)
+    cases = [Case("default", _inputs(study, {}))]
+    cases += [Case(one.label, _inputs(study, {one.parameter: one.value})) for one in variations]
+    outcome = execute(cases, evaluate, store_path, progress, workers or study.workers)
+    default = outcome.results[0]
+    if default is None:
+        raise InputError(f"the default shape has no result: {outcome.failures[0].reason}")
+    good = [(one, result) for one, result in zip(variations, outcome.results[1:], strict=True) if result is not None]
+    rows = tuple(
+        row
+        for one, result in good
+        for row in changes(one.parameter, one.side, one.value, one.range.default, result, default)
+    )
+    found = SensitivityResult(
+        study,
+        default,
+        tuple(one for one, _ in good),
+        tuple(result for _, result in good),
+        rows,
+        tuple(thesis.agreement(as_sensitivities(rows))),
+        outcome.failures,
+        {},
+        outcome.computed,
+        outcome.reused,
+        outcome.seconds,
+    )
+    found.files.update(write_tables(found, out_dir))
+    if plots:
+        from spaceplane.study.plots import write_plots  # matplotlib takes a second to import
+
+        found.files.update(write_plots(found, out_dir))
+    return found
+
+
+def plan(study: SensitivityStudy) -> tuple[Variation, ...]:
+    """Return the changed shapes that a study asks for.
+
+    Raises:
+        InputError: an unknown parameter, or a value out of its limits or equal to the default.
+    """
+    ranges = parameter_ranges(study.vehicle, study.set)
+    variations = []
+    for name, values in study.parameters.items():
+        if name not in ranges:
+            raise InputError(f"parameters: {name} is unknown; {nearest(name, list(ranges))}")
+        limits = ranges[name]
+        for value in values or (limits.lower, limits.upper):
+            if not study.allow_outside_limits and not limits.lower <= value <= limits.upper:
+                raise InputError(f"{name}: {value:g}; allowed: {limits.lower:g} to {limits.upper:g} {limits.unit}")
+            if value == limits.default:
+                raise InputError(f"{name}: {value:g} is the default; name another value")
+            variations.append(Variation(name, "low" if value < limits.default else "high", float(value), limits))
+    return tuple(variations)
+
+
+def as_sensitivities(rows: tuple[Change, ...]) -> list[thesis.Sensitivity]:
+    """Return the derivatives among the rows whose flow did not fail, for comparison with the thesis."""
+    return [
+        thesis.Sensitivity(
+            row.parameter,
+            row.side,
+            row.parameter_value,
+            row.mach,
+            row.quantity,
+            row.value,
+            row.default,
+            thesis.resolution(row.value, row.default),
+        )
+        for row in rows
+        if row.kind == "derivative" and row.flow != "failed" and row.value is not None and row.default is not None
+    ]
+
+
+def write_tables(found: SensitivityResult, out_dir: Path) -> dict[str, Path]:
+    """Write sensitivity.csv (tidy), agreement.csv and sensitivity.json; return their paths by what they hold."""
+    files = {
+        "changes": out_dir / "sensitivity.csv",
+        "agreement": out_dir / "agreement.csv",
+        "json": out_dir / "sensitivity.json",
+    }
+    _write_csv(files["changes"], [row.as_row() for row in found.rows])
+    _write_csv(files["agreement"], list(found.agreement))
+    files["json"].write_text(json.dumps(_document(found), indent=1, allow_nan=False), encoding="utf-8")
+    return files
+
+
+def _document(found: SensitivityResult) -> dict:
+    tables = {by: thesis.agreement_table(found.agreement, by) for by in ("derivative", "parameter", "mach")}
+    return {
+        "schema": SCHEMA,
+        "schema_version": SCHEMA_VERSION,
+        "created": datetime.now(UTC).isoformat(timespec="seconds"),
+        "version": __version__,
+        "code": code_fingerprint(),
+        "study": found.study.model_dump(mode="json"),
+        "cases": {"computed": found.computed, "reused": found.reused, "seconds": round(found.seconds, 3)},
+        "failures": [{"case": failure.label, "reason": failure.reason} for failure in found.failures],
+        "default": {"settings": found.default["settings"], "flight_points": found.default["flight_points"]},
+        "rows": [row.as_row() for row in found.rows],
+        "thesis_agreement": {"by": tables, "rows": list(found.agreement)},
+    }
+
+
+def _inputs(study: SensitivityStudy, change: dict[str, float]) -> dict:
+    return case_inputs(study.vehicle, study.set | change, study.mach, study.settings, study.allow_outside_limits)
+
+
+def _folder(out_dir: Path | str) -> Path:
+    path = Path(out_dir)
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f"output folder {path}: cannot be made ({error.strerror})") from error
+    return path
+
+
+def _write_csv(path: Path, rows: list[dict]) -> None:
+    with path.open("w", newline="", encoding="utf-8") as file:
+        if rows:
+            writer = csv.DictWriter(file, fieldnames=list(rows[0]), lineterminator="\n")
+            writer.writeheader()
+            writer.writerows({name: "" if value is None else value for name, value in row.items()} for row in rows)
