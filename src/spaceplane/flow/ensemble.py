@@ -1,0 +1,143 @@
+"""The working arrays of an ensemble on one level, and one implicit iteration on them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from spaceplane.flow import implicit
+from spaceplane.flow.fluxes import FLUXES
+from spaceplane.flow.freestream import velocity
+from spaceplane.flow.limiters import LIMITERS
+from spaceplane.flow.reconstruction import gradients
+from spaceplane.flow.residual import fluxes, pressures_on_wall
+from spaceplane.flow.settings import FlowSettings
+from spaceplane.flow.solution import FlowConditions
+from spaceplane.flow.topology import Topology
+from spaceplane.mesh.mesh import Mesh
+
+
+def free_stream(conditions: FlowConditions) -> np.ndarray:
+    """[5, condition] rho, u, v, w, p in the scaled units of `Solution`."""
+    count = len(conditions)
+    speed = velocity(conditions.mach, conditions.alpha, conditions.beta)
+    return np.concatenate([np.ones((1, count)), speed.T, np.full((1, count), 1.0 / conditions.gamma)])
+
+
+class Ensemble:
+    """State and scratch arrays [cell, variable, lane] of some conditions on one mesh.
+
+    Lanes beyond the conditions repeat the last one, so that vector loops are full; nothing is read from them.
+
+    Attributes:
+        lanes: [lane] condition of each lane.
+        state, residual, change: [cell, 5, lane]; gradient: [cell, 15, lane]; sensor: [cell, lane];
+        inverse: [cell, 25, lane] inverse diagonal blocks.
+    """
+
+    def __init__(self, mesh: Mesh, topology: Topology, conditions: FlowConditions, settings: FlowSettings, order: int):
+        self.mesh, self.topology, self.conditions, self.settings, self.order = (
+            mesh,
+            topology,
+            conditions,
+            settings,
+            order,
+        )
+        self.dtype = settings.dtype
+        self.gamma = self.dtype(conditions.gamma)
+        self.wall_area = np.asarray(mesh.wall_area, dtype=np.float64)
+        self.wetted = float(np.linalg.norm(self.wall_area, axis=1).sum()) or 1.0
+        extent = (
+            np.ptp(mesh.wall_center, axis=0).max() if len(mesh.wall_center) else np.ptp(mesh.cell_center, axis=0).max()
+        )
+        self.smallness = self.dtype((settings.limiter_constant / extent) ** 3)
+        self.low, self.high = (self.dtype(value) for value in FLUXES[settings.flux])
+        self.limiter = LIMITERS[settings.limiter]
+        self.allocate(np.arange(len(conditions)))
+
+    def allocate(self, active: np.ndarray) -> None:
+        """Make arrays for the conditions `active`, state at the free stream."""
+        unit = self.settings.smallest_lanes
+        padded = unit * -(-len(active) // unit)
+        self.lanes = np.concatenate([active, np.full(padded - len(active), active[-1], dtype=active.dtype)])
+        self.count = len(active)
+        cells, lanes, dtype = self.mesh.cells, padded, self.dtype
+        self.free = np.ascontiguousarray(free_stream(self.conditions)[:, self.lanes], dtype=dtype)
+        self.state = np.empty((cells, 5, lanes), dtype)
+        self.state[:] = self.free
+        self.residual = np.zeros((cells, 5, lanes), dtype)
+        self.change = np.zeros((cells, 5, lanes), dtype)
+        self.gradient = np.zeros((cells, 15, lanes), dtype) if self.order == 2 else np.zeros((1, 15, lanes), dtype)
+        self.sensor = np.zeros((cells, lanes), dtype)
+        self.inverse = np.zeros((cells, 25, lanes), dtype)
+
+    def keep(self, lanes: np.ndarray) -> None:
+        """Drop all lanes but these (indices into the current ones)."""
+        state = self.state
+        self.allocate(self.lanes[lanes])
+        source = np.concatenate([lanes, np.full(len(self.lanes) - len(lanes), lanes[-1])])
+        np.take(state, source, axis=2, out=self.state)
+
+    def evaluate(self) -> np.ndarray:
+        """Compute the residual of the present state; its norm [lane], fp64."""
+        t, s = self.topology, self.settings
+        if self.order == 2:
+            gradients(
+                t, self.state, self.gradient, self.sensor, self.limiter, self.low, self.high, self.smallness, self.gamma
+            )
+        else:
+            self.sensor[:] = self.low
+        gradient = self.gradient if self.order == 2 else self.gradient_of_nothing()
+        fluxes(
+            t,
+            self.state,
+            gradient,
+            self.sensor,
+            self.free,
+            self.residual,
+            self.gamma,
+            self.dtype(s.low_mach),
+            self.stiffness(),
+            self.order,
+        )
+        sums = np.zeros((len(t.chunk_cells) - 1, self.state.shape[2]))
+        implicit.squared_norms(t, self.residual, sums)
+        return np.sqrt(sums.sum(axis=0))
+
+    def gradient_of_nothing(self) -> np.ndarray:
+        """Zero gradients; the kernels of a first-order level read only those of wall cells, multiplied by zero."""
+        if len(self.gradient) != self.mesh.cells:
+            self.gradient = np.zeros((self.mesh.cells, 15, self.state.shape[2]), self.dtype)
+        return self.gradient
+
+    def stiffness(self) -> float:
+        """Acoustic share in the wall pressure: full on first-order levels, which start impulsively."""
+        return self.dtype(1.0 if self.order == 1 else self.settings.wall_stiffness)
+
+    def correct(self, cfl: np.ndarray) -> None:
+        """Fill `change` with the implicit increment at the CFL numbers [lane]."""
+        t = self.topology
+        implicit.diagonals(
+            t, self.state, self.sensor, self.free, cfl.astype(self.dtype), self.gamma, self.stiffness(), self.inverse
+        )
+        self.change[:] = 0
+        for forward in (True, False):
+            implicit.sweep(t, self.state, self.sensor, self.residual, self.inverse, self.change, self.gamma, forward)
+
+    def apply(self, largest: float) -> np.ndarray:
+        """Add `change` to the state, guarded; [lane] share of cells that were scaled back."""
+        limited = np.zeros((len(self.topology.chunk_cells) - 1, self.state.shape[2]), self.dtype)
+        implicit.apply_change(self.topology, self.state, self.change, self.dtype(largest), limited)
+        return limited.sum(axis=0, dtype=np.float64) / self.mesh.cells
+
+    def wall_pressure(self) -> np.ndarray:
+        """[wall, lane] pressure on the walls, from the state and gradients of the last `evaluate`."""
+        out = np.zeros((len(self.wall_area), self.state.shape[2]), self.dtype)
+        gradient = self.gradient if self.order == 2 else self.gradient_of_nothing()
+        pressures_on_wall(self.topology, self.state, gradient, self.gamma, self.stiffness(), self.order, out)
+        return out
+
+    def forces(self) -> np.ndarray:
+        """[lane, 3] pressure force over q A_wetted."""
+        gauge = self.wall_pressure().astype(np.float64) - 1.0 / float(self.gamma)
+        mach = self.conditions.mach[self.lanes]
+        return (gauge.T @ self.wall_area) / (0.5 * mach**2 * self.wetted)[:, None]

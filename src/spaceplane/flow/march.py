@@ -1,0 +1,124 @@
+"""Iterate an ensemble on one level: CFL feedback, stopping and failure by condition."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from spaceplane.flow.ensemble import Ensemble
+from spaceplane.flow.settings import FlowSettings
+
+
+@dataclass
+class History:
+    """What one condition did on one level."""
+
+    residual: list[float] = field(default_factory=list)
+    force: list[np.ndarray] = field(default_factory=list)
+    failure: str = ""
+    done: bool = False
+
+    def drop(self) -> float:
+        """Decades that the residual has fallen since the first iteration."""
+        first, last = self.residual[0], self.residual[-1]
+        return float(np.log10(max(first, 1e-300) / max(last, 1e-300)))
+
+    def spread(self, window: int) -> float:
+        """Half peak-to-peak of the force over the last `window` iterations, on the mean force's size."""
+        force = np.array(self.force[-window:])
+        scale = max(float(np.linalg.norm(force.mean(axis=0))), 1e-6)
+        return float(0.5 * np.ptp(force, axis=0).max() / scale)
+
+
+@dataclass(frozen=True)
+class Caution:
+    """How boldly to march: raised when a condition is retried by itself."""
+
+    cfl_start: float
+    cfl_max: float
+    growth: float = 1.5
+    largest: float = 0.3
+
+
+def starting_cfl(mach: np.ndarray, caution: Caution) -> np.ndarray:
+    """[lane] first CFL number: 1 above Mach 5, falling there from `cfl_start` at Mach 2."""
+    blend = np.clip((mach - 2.0) / 3.0, 0.0, 1.0)
+    return np.minimum(caution.cfl_start, caution.cfl_start + blend * (1.0 - caution.cfl_start))
+
+
+def feedback(cfl: np.ndarray, before: np.ndarray, now: np.ndarray, limited: np.ndarray, caution: Caution) -> np.ndarray:
+    """[lane] next CFL number: grows while the residual behaves, halves when it jumps or many cells had to be held back."""
+    grown = now / np.maximum(before, 1e-300)
+    factor = np.where(grown < 1.2, caution.growth, 1.0)
+    factor = np.where(limited > 1e-3, 1.0, factor)
+    factor = np.where((grown > 2.0) | (limited > 1e-2), 0.5, factor)
+    return np.clip(cfl * factor, min(0.5, caution.cfl_start), caution.cfl_max)
+
+
+def converged(history: History, settings: FlowSettings) -> bool:
+    """Whether a condition may stop on the fine mesh: residual and force window together."""
+    if len(history.residual) <= settings.window:
+        return False
+    spread = history.spread(settings.window)
+    drop = history.drop()
+    return (drop >= settings.residual_drop and spread < 10 * settings.force_tolerance) or (
+        drop >= settings.least_drop and spread < settings.force_tolerance
+    )
+
+
+def march(
+    ensemble: Ensemble,
+    iterations: int,
+    caution: Caution,
+    stop: Callable[[History], bool],
+    finish: Callable[[int, Ensemble, int, History], None],
+    tick: Callable[[int, int, float], None],
+) -> dict[int, History]:
+    """Iterate until every condition has stopped, failed or used up `iterations`.
+
+    Args:
+        stop: whether a condition with this history is done.
+        finish: called once for each condition with (condition, ensemble, lane, history) when it leaves.
+        tick: called each iteration with (iteration, active conditions, worst drop in decades).
+
+    Returns:
+        History by condition.
+    """
+    histories = {int(c): History() for c in ensemble.lanes[: ensemble.count]}
+    cfl = starting_cfl(ensemble.conditions.mach[ensemble.lanes], caution)
+    before = None
+    limited = np.zeros(len(ensemble.lanes))
+    for iteration in range(iterations + 1):
+        norms = ensemble.evaluate()
+        forces = ensemble.forces()
+        leaving = []
+        for lane in range(ensemble.count):
+            condition = int(ensemble.lanes[lane])
+            history = histories[condition]
+            history.residual.append(float(norms[lane]))
+            history.force.append(forces[lane])
+            if not (np.isfinite(norms[lane]) and np.isfinite(forces[lane]).all()):
+                history.failure = f"not a number after {iteration} iterations"
+            history.done = not history.failure and stop(history)
+            if history.failure or history.done or iteration == iterations:
+                finish(condition, ensemble, lane, history)
+                leaving.append(lane)
+        staying = np.setdiff1d(np.arange(ensemble.count), leaving)
+        worst = min((histories[int(ensemble.lanes[k])].drop() for k in range(ensemble.count)), default=0.0)
+        tick(iteration, len(staying), worst)
+        if not len(staying):
+            break
+        if before is not None:
+            cfl = feedback(cfl, before, norms, limited, caution)
+        before = norms
+        if leaving:
+            source = np.concatenate([staying, np.full(len(ensemble.lanes) - len(staying), staying[-1])])
+            ensemble.keep(staying)
+            source = source[: len(ensemble.lanes)]
+            cfl, before, limited = cfl[source], before[source], limited[source]
+            ensemble.evaluate()
+        ensemble.correct(cfl)
+        limited = ensemble.apply(caution.largest)
+    return histories

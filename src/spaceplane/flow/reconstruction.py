@@ -1,0 +1,128 @@
+"""Limited least-squares gradients and the shock sensor, one pass over the cells."""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import prange
+
+from spaceplane.flow.compiled import inlined, kernel
+from spaceplane.flow.limiters import barth_jespersen, venkatakrishnan
+
+
+@inlined
+def limit(kind, room, step, eps2):
+    """The limiter chosen by number (see `limiters.LIMITERS`)."""
+    real = type(room)
+    if kind == 1:
+        return venkatakrishnan(room, step, eps2)
+    if kind == 2:
+        return barth_jespersen(room, step, eps2)
+    return real(1)
+
+
+@inlined
+def shock_weight(ratio, compression, low, high):
+    """Weight of HLLE: 0 below the pressure ratio 2.5, 1 above 3.5, smooth between, only in compression; within [low, high]."""
+    real = type(ratio)
+    x = min(max(ratio - real(2.5), real(0)), real(1))
+    weight = x * x * (real(3) - real(2) * x)
+    weight = weight if compression > real(0) else real(0)
+    return min(max(weight, low), high)
+
+
+@kernel
+def gradients(topology, state, gradient, sensor, limiter, theta_low, theta_high, smallness, gamma):
+    """Fill `gradient` [cell, 15, lane] (variable-major: 3 variable + axis) and `sensor` [cell, lane].
+
+    Gradients come out limited, and scaled by (1 - sensor) in strong shocks.
+
+    Args:
+        state: [cell, 5, lane] rho, u, v, w, p.
+        limiter: number of the limiter.
+        theta_low, theta_high: bounds of the weight of HLLE.
+        smallness: eps^2 of the limiter = min(smallness * size^3, 1e-3) on the local scale of each variable.
+    """
+    cells, _, lanes = state.shape
+    start = topology.start
+    reach = topology.reach
+    stencil_start = topology.stencil_start
+    stencil_other = topology.stencil_other
+    weight = topology.stencil_weight
+    edge_start = topology.edge_start
+    edge_row = topology.edge_row
+    edge_reach = topology.boundary_reach
+    chunk_cells = topology.chunk_cells
+    for chunk in prange(chunk_cells.shape[0] - 1):
+        high = np.empty((5, lanes), state.dtype)
+        low = np.empty((5, lanes), state.dtype)
+        phi = np.empty((5, lanes), state.dtype)
+        eps2 = np.empty((5, lanes), state.dtype)
+        g = np.empty((15, lanes), state.dtype)
+        for i in range(chunk_cells[chunk], chunk_cells[chunk + 1]):
+            real = type(topology.volume[i])
+            one = real(1)
+            g[:] = real(0)
+            for k in range(5):
+                for n in range(lanes):
+                    high[k, n] = state[i, k, n]
+                    low[k, n] = state[i, k, n]
+                    phi[k, n] = one
+            for e in range(stencil_start[i], stencil_start[i + 1]):
+                j = stencil_other[e]
+                cx = weight[e, 0]
+                cy = weight[e, 1]
+                cz = weight[e, 2]
+                for k in range(5):
+                    for n in range(lanes):
+                        value = state[j, k, n]
+                        d = value - state[i, k, n]
+                        g[3 * k, n] += cx * d
+                        g[3 * k + 1, n] += cy * d
+                        g[3 * k + 2, n] += cz * d
+                        high[k, n] = max(high[k, n], value)
+                        low[k, n] = min(low[k, n], value)
+            h = topology.size[i]
+            noise = min(smallness * h * h * h, real(1e-3)) + real(1e-12)
+            for n in range(lanes):
+                r = state[i, 0, n]
+                p = state[i, 4, n]
+                a2 = gamma * p / r
+                speed2 = a2 + state[i, 1, n] ** 2 + state[i, 2, n] ** 2 + state[i, 3, n] ** 2
+                eps2[0, n] = noise * r * r
+                eps2[1, n] = noise * speed2
+                eps2[2, n] = noise * speed2
+                eps2[3, n] = noise * speed2
+                eps2[4, n] = noise * (gamma * p) * (gamma * p)
+                ratio = max(high[4, n] / p, p / low[4, n])
+                squeeze = -(g[3, n] + g[7, n] + g[11, n])
+                sensor[i, n] = shock_weight(ratio, squeeze, theta_low, theta_high)
+            if limiter != 0:
+                for k in range(5):
+                    for n in range(lanes):
+                        high[k, n] -= state[i, k, n]
+                        low[k, n] = state[i, k, n] - low[k, n]
+                for e in range(start[i], start[i + 1]):
+                    dx = reach[e, 0]
+                    dy = reach[e, 1]
+                    dz = reach[e, 2]
+                    for k in range(5):
+                        for n in range(lanes):
+                            step = g[3 * k, n] * dx + g[3 * k + 1, n] * dy + g[3 * k + 2, n] * dz
+                            room = high[k, n] if step > real(0) else low[k, n]
+                            phi[k, n] = min(phi[k, n], limit(limiter, room, abs(step), eps2[k, n]))
+                for m in range(edge_start[i], edge_start[i + 1]):
+                    row = edge_row[m]
+                    dx = edge_reach[row, 0]
+                    dy = edge_reach[row, 1]
+                    dz = edge_reach[row, 2]
+                    for k in range(5):
+                        for n in range(lanes):
+                            step = g[3 * k, n] * dx + g[3 * k + 1, n] * dy + g[3 * k + 2, n] * dz
+                            room = high[k, n] if step > real(0) else low[k, n]
+                            phi[k, n] = min(phi[k, n], limit(limiter, room, abs(step), eps2[k, n]))
+            for k in range(5):
+                for n in range(lanes):
+                    factor = phi[k, n] * (one - sensor[i, n])
+                    gradient[i, 3 * k, n] = factor * g[3 * k, n]
+                    gradient[i, 3 * k + 1, n] = factor * g[3 * k + 1, n]
+                    gradient[i, 3 * k + 2, n] = factor * g[3 * k + 2, n]

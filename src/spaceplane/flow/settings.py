@@ -1,0 +1,126 @@
+"""Settings of the flow solver and the check of what it is asked to solve."""
+
+from __future__ import annotations
+
+import difflib
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from spaceplane.errors import InputError
+from spaceplane.flow.fluxes import FLUXES
+from spaceplane.flow.limiters import LIMITERS
+from spaceplane.flow.solution import FlowConditions
+
+PRECISIONS = {"single": np.float32, "double": np.float64}
+
+
+@dataclass(frozen=True)
+class FlowSettings:
+    """Numerics of the ensemble Euler solver; defaults are what we trust.
+
+    Attributes:
+        precision: "single" (fp32) or "double" (fp64) for state and kernels; sums are always fp64.
+        order: 2, or 1 for a first-order solution.
+        flux: name in `fluxes.FLUXES`.
+        limiter: name in `limiters.LIMITERS`.
+        limiter_constant: Venkatakrishnan's K on the body length; variations below (K h / L)^1.5 of the local scale are left alone.
+        low_mach: local Mach number below which the low-Mach correction stops shrinking the normal jump; 1 switches it off.
+        wall_stiffness: share of the acoustic response to flow through the wall added to the wall pressure (0 to 1).
+        cfl_start, cfl_max: pseudo-time CFL numbers; `cfl_start` is lowered to 1 above Mach 5.
+        anderson_depth: earlier iterates combined by Anderson acceleration; 0 switches it off.
+        iterations: most iterations on the fine mesh.
+        coarse_iterations: most iterations on each coarse level.
+        coarse_levels: number of coarse levels to start on.
+        residual_drop: decades that the density residual must fall on the fine mesh to stop at once.
+        least_drop: decades below which nothing is called converged.
+        force_tolerance: half peak-to-peak of the force over the window, on the force's size, to stop after `least_drop`.
+        window: iterations of the force window.
+        smallest_lanes: conditions are padded to a multiple of this.
+    """
+
+    precision: str = "single"
+    order: int = 2
+    flux: str = "blend"
+    limiter: str = "venkatakrishnan"
+    limiter_constant: float = 5.0
+    low_mach: float = 0.05
+    wall_stiffness: float = 0.0
+    cfl_start: float = 5.0
+    cfl_max: float = 100.0
+    anderson_depth: int = 5
+    iterations: int = 120
+    coarse_iterations: int = 60
+    coarse_levels: int = 3
+    residual_drop: float = 3.0
+    least_drop: float = 1.5
+    force_tolerance: float = 1e-3
+    window: int = 10
+    smallest_lanes: int = 8
+
+    def __post_init__(self) -> None:
+        choose("precision", self.precision, PRECISIONS)
+        choose("flux", self.flux, FLUXES)
+        choose("limiter", self.limiter, LIMITERS)
+        if self.order not in (1, 2):
+            raise InputError(f"order: {self.order} is not allowed; 1 or 2")
+        for name, low, high in (
+            ("limiter_constant", 0.0, 1e3),
+            ("low_mach", 0.0, 1.0),
+            ("wall_stiffness", 0.0, 1.0),
+            ("cfl_start", 0.05, 1e4),
+            ("cfl_max", 0.05, 1e6),
+            ("residual_drop", 0.1, 16.0),
+            ("least_drop", 0.0, 16.0),
+            ("force_tolerance", 0.0, 1.0),
+            ("anderson_depth", 0, 10),
+            ("iterations", 1, 10**6),
+            ("coarse_iterations", 1, 10**6),
+            ("coarse_levels", 0, 10),
+            ("window", 2, 1000),
+            ("smallest_lanes", 1, 64),
+        ):
+            value = getattr(self, name)
+            if not (isinstance(value, int | float) and math.isfinite(value) and low <= value <= high):
+                raise InputError(f"{name}: {value} is not allowed; {low} to {high}")
+
+    @property
+    def dtype(self) -> type:
+        """numpy type of the working precision."""
+        return PRECISIONS[self.precision]
+
+
+def choose(field: str, name: str, registry: dict) -> object:
+    """The registry's entry called `name`; an InputError with the nearest name when there is none."""
+    if name in registry:
+        return registry[name]
+    near = difflib.get_close_matches(str(name), list(registry), n=1)
+    hint = f"; did you mean {near[0]!r}?" if near else ""
+    raise InputError(f"{field}: {name!r} is not known; one of {', '.join(registry)}{hint}")
+
+
+def check(conditions: FlowConditions) -> FlowConditions:
+    """The conditions as float64 arrays of one length; an InputError for what no flow can have."""
+    values = {}
+    for name in ("mach", "alpha", "beta"):
+        try:
+            values[name] = np.atleast_1d(np.asarray(getattr(conditions, name), dtype=np.float64))
+        except (TypeError, ValueError) as error:
+            raise InputError(f"{name}: {getattr(conditions, name)!r} is not a number") from error
+        if values[name].ndim != 1:
+            raise InputError(f"{name}: shape {values[name].shape} is not allowed; a list of numbers")
+        bad = values[name][~np.isfinite(values[name])]
+        if len(bad):
+            raise InputError(f"{name}: {bad[0]} is not allowed; a finite number")
+    count = {name: len(value) for name, value in values.items()}
+    if len(set(count.values())) != 1 or not count["mach"]:
+        raise InputError(f"conditions: {count} entries; mach, alpha and beta need the same number, at least one")
+    if (values["mach"] <= 0).any():
+        raise InputError(f"mach: {values['mach'].min():g} is not allowed; greater than 0")
+    for name in ("alpha", "beta"):
+        if (np.abs(values[name]) > np.pi).any():
+            raise InputError(f"{name}: {np.abs(values[name]).max():g} rad is not allowed; -pi to pi")
+    if not (np.isfinite(conditions.gamma) and 1.0 < conditions.gamma <= 3.0):
+        raise InputError(f"gamma: {conditions.gamma} is not allowed; greater than 1, at most 3")
+    return FlowConditions(values["mach"], values["alpha"], values["beta"], float(conditions.gamma))

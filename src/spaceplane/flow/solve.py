@@ -1,0 +1,178 @@
+"""Steady flow of all conditions of one shape: start on coarse levels, converge on the mesh, judge each condition."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+
+import numpy as np
+
+from spaceplane.errors import InputError
+from spaceplane.flow.coarsen import Sequence, sequence
+from spaceplane.flow.compiled import is_compiled, mark_compiled
+from spaceplane.flow.ensemble import Ensemble, free_stream
+from spaceplane.flow.march import Caution, History, converged, march
+from spaceplane.flow.settings import FlowSettings, check
+from spaceplane.flow.solution import ConvergenceRecord, FlowConditions, Solution
+from spaceplane.flow.topology import prepare
+from spaceplane.mesh.mesh import Mesh
+
+Progress = Callable[[str, int, int, str], None]
+
+
+def solve(
+    mesh: Mesh | Sequence,
+    conditions: FlowConditions,
+    settings: FlowSettings | None = None,
+    progress: Progress | None = None,
+) -> Solution:
+    """Solve the Euler equations for every condition at once.
+
+    Args:
+        mesh: the mesh, or one with its coarse levels (see `coarsen.Sequence`); by default the levels are made here.
+        conditions: free streams; checked.
+        settings: numerics; defaults when None.
+        progress: called with (phase, done, total, text).
+
+    Returns:
+        Solution with one ConvergenceRecord per condition. A condition that fails twice has NaN as state and wall pressure
+        and the verdict "failed".
+
+    Raises:
+        InputError: bad conditions or a mesh without cells.
+    """
+    settings = settings or FlowSettings()
+    conditions = check(conditions)
+    say = progress or (lambda phase, done, total, text: None)
+    began = time.perf_counter()
+    levels = mesh if isinstance(mesh, Sequence) else sequence(mesh, settings.coarse_levels)
+    fine = levels.meshes[0]
+    if not fine.cells:
+        raise InputError("mesh: 0 cells; at least one is needed")
+    cold = not is_compiled(settings.precision)
+    if cold:
+        say("compile", 0, 1, "compiling kernels (once, ~20 s)")
+    topologies = [prepare(level, settings.dtype) for level in levels.meshes]
+    prepared = time.perf_counter()
+    seconds = {"prepare": prepared - began}
+
+    job = _Job(levels, topologies, conditions, settings, say)
+    caution = Caution(settings.cfl_start, settings.cfl_max)
+    job.run(np.arange(len(conditions)), caution, seconds)
+    retry = np.array([c for c in range(len(conditions)) if not job.histories[c].done and job.worth_retry(c)], dtype=int)
+    if len(retry):
+        say("retry", 0, len(retry), f"{len(retry)} conditions once more, carefully")
+        job.run(retry, Caution(1.0, min(10.0, settings.cfl_max), 1.15, 0.1), seconds)
+    if cold:
+        mark_compiled(settings.precision)
+    records = tuple(judge(job.histories[c], settings) for c in range(len(conditions)))
+    seconds["total"] = time.perf_counter() - began
+    warnings = [f"condition {c}: {r.verdict}: {r.reason}" for c, r in enumerate(records) if not r.good]
+    statistics = {
+        "cells": fine.cells,
+        "level_cells": [m.cells for m in levels.meshes],
+        "seconds": seconds["total"],
+        "seconds_by_phase": {k: v for k, v in seconds.items() if k != "total"},
+        "iterations": max(r.iterations for r in records),
+        "precision": settings.precision,
+        "conditions": len(conditions),
+        "retried": [int(c) for c in retry],
+        "warnings": warnings,
+    }
+    return Solution(fine, conditions, job.state, job.wall_pressure, records, statistics)
+
+
+class _Job:
+    """State shared by the first run and the retries of one call of `solve`."""
+
+    def __init__(self, levels, topologies, conditions, settings, say):
+        self.levels, self.topologies, self.conditions = levels, topologies, conditions
+        self.settings, self.say = settings, say
+        fine = levels.meshes[0]
+        self.state = np.full((fine.cells, 5, len(conditions)), np.nan, settings.dtype)
+        self.wall_pressure = np.full((len(fine.wall_cell), len(conditions)), np.nan, settings.dtype)
+        self.histories: dict[int, History] = {}
+
+    def worth_retry(self, condition: int) -> bool:
+        """A condition that broke, or whose residual ended above where it began."""
+        history = self.histories[condition]
+        return bool(history.failure) or history.drop() < 0.5
+
+    def run(self, which: np.ndarray, caution: Caution, seconds: dict[str, float]) -> None:
+        """March the conditions `which` through all levels, coarse to fine."""
+        settings, start = self.settings, None
+        last = len(self.levels.meshes) - 1
+        for level in range(last, -1, -1):
+            began = time.perf_counter()
+            mesh, topology = self.levels.meshes[level], self.topologies[level]
+            order = settings.order if level == 0 else 1
+            subset = FlowConditions(
+                self.conditions.mach[which],
+                self.conditions.alpha[which],
+                self.conditions.beta[which],
+                self.conditions.gamma,
+            )
+            ensemble = Ensemble(mesh, topology, subset, settings, order)
+            if start is not None:
+                ensemble.state[:, :, : len(which)] = start[topology.order]
+                ensemble.state[:, :, len(which) :] = ensemble.state[:, :, len(which) - 1 : len(which)]
+            phase = "fine" if level == 0 else f"coarse {level}"
+            limit = settings.iterations if level == 0 else settings.coarse_iterations
+            result = np.empty((mesh.cells, 5, len(which)), settings.dtype)
+
+            def finish(lane_condition, ensemble, lane, history, level=level, result=result, topology=topology):
+                result[topology.order, :, lane_condition] = ensemble.state[:, :, lane]
+                if level == 0:
+                    self._keep(which[lane_condition], ensemble, lane, history, topology)
+                elif history.failure:
+                    # A coarse start that broke is replaced by the free stream; the next level may still succeed.
+                    result[:, :, lane_condition] = free_stream(ensemble.conditions)[:, lane_condition]
+
+            def tick(iteration, active, worst, phase=phase, limit=limit):
+                self.say(phase, iteration, limit, f"{active} active, {worst:.1f} decades")
+
+            stop = (lambda h: converged(h, settings)) if level == 0 else (lambda h: h.drop() >= 1.5)
+            march(ensemble, limit, caution, stop, finish, tick)
+            seconds[phase] = seconds.get(phase, 0.0) + time.perf_counter() - began
+            if level:
+                start = result[self.levels.parents[level - 1]]
+
+    def _keep(self, condition, ensemble, lane, history, topology):
+        """Store a fine-mesh result, unless an earlier attempt was better."""
+        earlier = self.histories.get(int(condition))
+        if earlier is not None and history.failure and not earlier.failure:
+            return
+        self.histories[int(condition)] = history
+        if history.failure:
+            self.state[:, :, condition] = np.nan
+            self.wall_pressure[:, condition] = np.nan
+            return
+        self.state[topology.order, :, condition] = ensemble.state[:, :, lane]
+        self.wall_pressure[:, condition] = ensemble.wall_pressure()[:, lane]
+
+
+def judge(history: History, settings: FlowSettings) -> ConvergenceRecord:
+    """The verdict on one condition, from residual and force window together."""
+    residual, force = np.array(history.residual), np.array(history.force)
+    window = force[-settings.window :]
+    drop, spread = history.drop(), history.spread(settings.window)
+    if history.failure:
+        verdict, reason = "failed", history.failure
+    elif converged(history, settings):
+        verdict, reason = "converged", ""
+    else:
+        long = history.spread(4 * settings.window)
+        verdict = "oscillating" if drop > 0.5 and long < 0.05 else "failed"
+        reason = (
+            f"residual fell {drop:.1f} decades in {len(residual) - 1} iterations, force wanders by {100 * long:.2g} %"
+        )
+    return ConvergenceRecord(
+        verdict=verdict,
+        residual_drop=drop if np.isfinite(drop) else 0.0,
+        iterations=len(residual) - 1,
+        residual_history=np.log10(np.maximum(residual, 1e-300) / max(residual[0], 1e-300)),
+        force_history=force,
+        window_mean=window.mean(axis=0),
+        window_spread=0.5 * np.ptp(window, axis=0),
+        reason=reason,
+    )

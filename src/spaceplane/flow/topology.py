@@ -1,0 +1,223 @@
+"""A mesh as the kernels want it: cells along a space-filling curve, faces by thread chunk, coefficients of gradients."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy import sparse
+
+from spaceplane.mesh.mesh import Mesh
+
+CELLS_PER_CHUNK = 16384
+CELLS_PER_BLOCK = 256
+
+
+class Topology(NamedTuple):
+    """Arrays of the kernels; real arrays in the working precision, indices int32.
+
+    Cells are renumbered along a Morton curve: `order[new] = old`. Every cell has a list of entries, one per interior
+    face, `start[cell]:start[cell + 1]`: the neighbour `other`, unit normal `normal` out of the cell, area `area`.
+    `stencil_*` is the list of the gradient's neighbours with the coefficients of the least-squares gradient.
+    Faces of a chunk (a run of cells owned by one thread) are `chunk_faces[chunk_start[k]:chunk_start[k + 1]]`; a face between two
+    chunks stands in both lists and each chunk adds its own side, so that threads never write to the same cell.
+    `boundary` rows are walls first (`walls` of them), then far field; `edge_start` lists them by cell.
+    Blocks of cells are coloured so that blocks of one colour do not touch: `color_start`, `color_blocks`.
+    """
+
+    order: np.ndarray
+    volume: np.ndarray
+    size: np.ndarray
+    start: np.ndarray
+    other: np.ndarray
+    normal: np.ndarray
+    area: np.ndarray
+    reach: np.ndarray
+    stencil_start: np.ndarray
+    stencil_other: np.ndarray
+    stencil_weight: np.ndarray
+    face_cells: np.ndarray
+    face_normal: np.ndarray
+    face_area: np.ndarray
+    face_reach: np.ndarray
+    chunk_cells: np.ndarray
+    chunk_start: np.ndarray
+    chunk_faces: np.ndarray
+    walls: int
+    edge_start: np.ndarray
+    edge_row: np.ndarray
+    boundary_cell: np.ndarray
+    boundary_normal: np.ndarray
+    boundary_area: np.ndarray
+    boundary_reach: np.ndarray
+    block_cells: np.ndarray
+    color_start: np.ndarray
+    color_blocks: np.ndarray
+
+
+def morton_order(points: np.ndarray, spacing: float) -> np.ndarray:
+    """[cell] order of the cells along a Morton curve with cubes of edge `spacing` (m)."""
+    low = points.min(axis=0)
+    cube = np.minimum((points - low) / spacing, 2**20 - 1).astype(np.uint64)
+    key = np.zeros(len(points), dtype=np.uint64)
+    for axis in range(3):
+        x = cube[:, axis]
+        for shift, mask in (
+            (32, 0x1F00000000FFFF),
+            (16, 0x1F0000FF0000FF),
+            (8, 0x100F00F00F00F00F),
+            (4, 0x10C30C30C30C30C3),
+            (2, 0x1249249249249249),
+        ):
+            x = (x | (x << np.uint64(shift))) & np.uint64(mask)
+        key |= x << np.uint64(2 - axis)
+    return np.argsort(key, kind="stable")
+
+
+def group(keys: np.ndarray, groups: int) -> tuple[np.ndarray, np.ndarray]:
+    """(start [groups + 1], rows): rows sorted by key, stable."""
+    rows = np.argsort(keys, kind="stable")
+    return np.concatenate([[0], np.cumsum(np.bincount(keys, minlength=groups))]), rows
+
+
+def least_squares(center: np.ndarray, start: np.ndarray, other: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Coefficients [entry, xyz] of the gradient and the reciprocal condition number [cell] of its matrix.
+
+    Weights 1/distance^2 in the normal equations. Directions that the neighbours do not span get no gradient.
+    """
+    cells = len(start) - 1
+    row = np.repeat(np.arange(cells), np.diff(start))
+    d = center[other] - center[row]
+    weight = 1.0 / np.einsum("ij,ij->i", d, d)
+    product = (d[:, :, None] * d[:, None, :] * weight[:, None, None]).reshape(-1, 9)
+    matrix = np.stack([np.bincount(row, product[:, k], cells) for k in range(9)], axis=1).reshape(-1, 3, 3)
+    values, vectors = np.linalg.eigh(matrix)
+    largest = np.maximum(values[:, 2], 1e-300)
+    quality = np.maximum(values[:, 0], 0.0) / largest
+    kept = values > 0.02 * largest[:, None]
+    inverse = np.where(kept, 1.0 / np.where(kept, values, 1.0), 0.0)
+    pseudo = np.einsum("cik,ck,cjk->cij", vectors, inverse, vectors)
+    return np.einsum("eij,ej->ei", pseudo[row], d * weight[:, None]), quality
+
+
+def gradient_stencil(center: np.ndarray, start: np.ndarray, other: np.ndarray) -> tuple[np.ndarray, ...]:
+    """(start, other, coefficients): face neighbours; where they span space badly, their neighbours too."""
+    weight, quality = least_squares(center, start, other)
+    poor = np.flatnonzero(quality < 0.1)
+    if not len(poor):
+        return start, other, weight
+    cells = len(center)
+    graph = sparse.csr_matrix((np.ones(len(other), dtype=np.int8), other, start), shape=(cells, cells))
+    wide = (graph[poor] @ graph + graph[poor]).tocsr()
+    wide = wide.tocoo()
+    keep = wide.col != poor[wide.row]
+    plain = np.ones(cells, dtype=bool)
+    plain[poor] = False
+    row = np.repeat(np.arange(cells), np.diff(start))
+    rows = np.concatenate([row[plain[row]], poor[wide.row[keep]]])
+    cols = np.concatenate([other[plain[row]], wide.col[keep]])
+    order = np.lexsort((cols, rows))
+    new_start = np.concatenate([[0], np.cumsum(np.bincount(rows, minlength=cells))])
+    new_other = cols[order]
+    return new_start, new_other, least_squares(center, new_start, new_other)[0]
+
+
+def color_blocks(cells: int, face_cells: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Blocks of consecutive cells, coloured greedily so that neighbours differ: (block_cells, color_start, blocks)."""
+    count = max(1, round(cells / CELLS_PER_BLOCK))
+    bounds = np.linspace(0, cells, count + 1).astype(np.int64)
+    block = np.repeat(np.arange(count), np.diff(bounds))
+    a, b = block[face_cells[:, 0]], block[face_cells[:, 1]]
+    across = a != b
+    a, b = a[across], b[across]
+    graph = sparse.csr_matrix((np.ones(2 * len(a)), (np.r_[a, b], np.r_[b, a])), shape=(count, count))
+    color = np.full(count, -1)
+    for k in range(count):
+        taken = set(color[graph.indices[graph.indptr[k] : graph.indptr[k + 1]]].tolist())
+        color[k] = next(c for c in range(count + 1) if c not in taken)
+    start, blocks = group(color, int(color.max()) + 1)
+    return bounds, start, blocks
+
+
+def _unit(area: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    size = np.linalg.norm(area, axis=1)
+    normal = np.where(size[:, None] > 0, area / np.where(size, size, 1.0)[:, None], [1.0, 0.0, 0.0])
+    return normal, size
+
+
+def prepare(mesh: Mesh, dtype: type) -> Topology:
+    """Build the kernels' view of `mesh` in precision `dtype`."""
+    cells = mesh.cells
+    order = morton_order(mesh.cell_center, float(mesh.cell_size.min()))
+    place = np.empty(cells, dtype=np.int64)
+    place[order] = np.arange(cells)
+    center = mesh.cell_center[order]
+
+    pair = place[mesh.face_cells]
+    flip = pair[:, 0] > pair[:, 1]
+    sign = np.where(flip, -1.0, 1.0)
+    pair = np.sort(pair, axis=1)
+    rank = np.lexsort((pair[:, 1], pair[:, 0]))
+    pair = pair[rank]
+    normal, area = _unit((mesh.face_area * sign[:, None])[rank])
+    face_center = mesh.face_center[rank]
+    reach = np.concatenate([face_center - center[pair[:, 0]], face_center - center[pair[:, 1]]], axis=1)
+
+    faces = len(pair)
+    start, rows = group(np.r_[pair[:, 0], pair[:, 1]], cells)
+    other = np.r_[pair[:, 1], pair[:, 0]][rows]
+    entry_normal = np.concatenate([normal, -normal])[rows]
+    entry_area = np.r_[area, area][rows]
+    entry_reach = np.concatenate([reach[:, :3], reach[:, 3:]])[rows]
+    stencil_start, stencil_other, weight = gradient_stencil(center, start, other)
+
+    chunks = max(1, round(cells / CELLS_PER_CHUNK))
+    chunk_cells = np.linspace(0, cells, chunks + 1).astype(np.int64)
+    chunk = np.repeat(np.arange(chunks), np.diff(chunk_cells))
+    first, second = chunk[pair[:, 0]], chunk[pair[:, 1]]
+    cross = np.flatnonzero(first != second)
+    listed = np.r_[np.arange(faces), cross]
+    chunk_start, listed_rows = group(np.r_[first, second[cross]], chunks)
+
+    edge_cell = place[np.r_[mesh.wall_cell, mesh.far_cell].astype(np.int64)]
+    edge_normal, edge_area = _unit(np.concatenate([mesh.wall_area, mesh.far_area]))
+    edge_reach = np.concatenate([mesh.wall_center, mesh.far_center]) - center[edge_cell]
+    edge_start, edge_row = group(edge_cell, cells)
+    block_cells, color_start, blocks = color_blocks(cells, pair)
+
+    def real(x: np.ndarray) -> np.ndarray:
+        return np.ascontiguousarray(x, dtype=dtype)
+
+    def index(x: np.ndarray) -> np.ndarray:
+        return np.ascontiguousarray(x, dtype=np.int32)
+
+    return Topology(
+        order=index(order),
+        volume=real(mesh.cell_volume[order]),
+        size=real(np.cbrt(mesh.cell_volume[order])),
+        start=index(start),
+        other=index(other),
+        normal=real(entry_normal),
+        area=real(entry_area),
+        reach=real(entry_reach),
+        stencil_start=index(stencil_start),
+        stencil_other=index(stencil_other),
+        stencil_weight=real(weight),
+        face_cells=index(pair),
+        face_normal=real(normal),
+        face_area=real(area),
+        face_reach=real(reach),
+        chunk_cells=index(chunk_cells),
+        chunk_start=index(chunk_start),
+        chunk_faces=index(listed[listed_rows]),
+        walls=len(mesh.wall_cell),
+        edge_start=index(edge_start),
+        edge_row=index(edge_row),
+        boundary_cell=index(edge_cell),
+        boundary_normal=real(edge_normal),
+        boundary_area=real(edge_area),
+        boundary_reach=real(edge_reach),
+        block_cells=index(block_cells),
+        color_start=index(color_start),
+        color_blocks=index(blocks),
+    )
