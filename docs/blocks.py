@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import shutil
 from collections.abc import Callable, Sequence
 from dataclasses import MISSING, fields
 from pathlib import Path
@@ -57,6 +56,61 @@ def settings_table(record: type) -> str:
     return table(("setting", "default", "meaning"), rows)
 
 
+def shape_parameters() -> str:
+    """Every shape parameter with unit, default, limits, meaning and source."""
+    from spaceplane.vehicle.shape import PARAMETERS
+
+    rows = [
+        (f"`{p.name}`", p.unit, f"{p.default:g}", f"{p.lower:g}", f"{p.upper:g}", p.description, p.source)
+        for p in PARAMETERS
+    ]
+    return table(("parameter", "unit", "default", "lower", "upper", "meaning", "source"), rows, "llrrrll")
+
+
+def controls() -> str:
+    """Every control surface with its limits and positive sense."""
+    from spaceplane.vehicle.controls import CONTROL_LIMITS_DEG, CONTROL_POSITIVE
+
+    rows = [
+        (f"`{name}`", CONTROL_POSITIVE[name], f"{lower:g} to {upper:g} deg")
+        for name, (lower, upper) in CONTROL_LIMITS_DEG.items()
+    ]
+    return table(("control", "positive", "limits"), rows)
+
+
+def command_line() -> str:
+    """The help of every command, as the program prints it."""
+    import click
+    import typer
+
+    from spaceplane.cli import app
+
+    root = typer.main.get_command(app)
+    parts: list[str] = []
+
+    def section(command: click.Command, path: str, parent: click.Context | None) -> None:
+        context = click.Context(command, info_name=path.split()[-1], parent=parent)
+        summary = (command.help or "").replace("\b\n", "").replace("\b", "").strip()
+        parts.append(f"## `{path}`\n\n```\n{summary}\n```\n" if parent else f"{summary}\n")
+        if isinstance(command, click.Group):
+            for name in command.list_commands(context):
+                section(command.get_command(context, name), f"{path} {name}", context)
+            return
+        rows = []
+        for parameter in command.get_params(context):
+            if isinstance(parameter, click.Option):
+                record = parameter.get_help_record(context)
+                if record and "--help" not in record[0]:
+                    rows.append((f"`{record[0]}`".replace("|", "\\|"), record[1].replace("|", "\\|")))
+            else:
+                rows.append((f"`{parameter.human_readable_name}`", getattr(parameter, "help", "") or ""))
+        if rows:
+            parts.append(table(("argument", "meaning"), rows) + "\n")
+
+    section(root, "spaceplane", None)
+    return "\n".join(parts)
+
+
 def mesh_settings() -> str:
     from spaceplane.mesh.settings import MeshSettings
 
@@ -87,6 +141,9 @@ def validation_block(case: str) -> Callable[[], str]:
 
 
 BLOCKS: dict[str, Callable[[], str]] = {
+    "shape parameters": shape_parameters,
+    "controls": controls,
+    "command line": command_line,
     "mesh settings": mesh_settings,
     "flow settings": flow_settings,
     "validation cones": validation_block("cones"),

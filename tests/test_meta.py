@@ -162,3 +162,26 @@ def test_quantities_carry_units():
             if not UNITS.search(text) and not all(named.search(arg) for arg in floats):
                 wanting.append(name)
     assert not wanting
+
+
+def test_shape_parameters_are_complete():
+    """Every parameter has a unit in its name or none, limits around its default, a meaning and a source."""
+    from spaceplane.vehicle.shape import PARAMETERS, THESIS_PARAMETERS
+
+    assert len(THESIS_PARAMETERS) == 19
+    for parameter in PARAMETERS:
+        assert parameter.name.endswith({"m": "_m", "deg": "_deg", "1": ""}[parameter.unit]), parameter.name
+        assert 0.0 < parameter.lower <= parameter.default <= parameter.upper, parameter.name
+        assert parameter.description and parameter.source, parameter.name
+
+
+def test_every_registered_scheme_is_tested_by_name():
+    """A flux or limiter that can be chosen by name appears in a test of the flow package, or the test runs over all."""
+    from spaceplane.flow.fluxes import FLUXES
+    from spaceplane.flow.limiters import LIMITERS
+
+    text = "".join(path.read_text(encoding="utf-8") for path in (Path(__file__).parent / "flow").glob("test_*.py"))
+    for registry, names in (("FLUXES", FLUXES), ("LIMITERS", LIMITERS)):
+        assert names, registry
+        for name in names:
+            assert registry in text or f'"{name}"' in text, f"{name} of {registry} is never tested"

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from spaceplane.flow.settings import FlowSettings
 from spaceplane.flow.solution import FlowConditions, Solution
-from spaceplane.flow.solve import FlowSettings, solve
+from spaceplane.flow.solve import solve
 from spaceplane.mesh.generate import generate
 from spaceplane.mesh.mesh import Mesh
 from spaceplane.mesh.settings import MeshSettings

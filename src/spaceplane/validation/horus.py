@@ -73,7 +73,7 @@ def run(fine: bool, progress: Progress) -> list[Record]:
 
 
 def conditions(lateral: bool) -> FlowConditions:
-    """The grid of the tables, Mach varying slowest; with `lateral` followed by the two sideslips of the lateral point."""
+    """The grid of the tables, Mach varying slowest; with `lateral`, the two sideslips of the lateral point last."""
     grid = [(mach, math.radians(alpha), 0.0) for mach in MACHS for alpha in ALPHAS_DEG]
     if lateral:
         step = math.radians(LATERAL_STEP_DEG)
