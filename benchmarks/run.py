@@ -4,8 +4,8 @@
     python benchmarks/run.py --cells 30000   something quick
     python benchmarks/run.py --store         keep the result as this machine's baseline
 
-Kernels are compiled by a tiny warm-up first, so that no figure contains compilation. The baseline holds one entry per machine
-(processor, cores, cells, conditions); a machine without one is told so and compared with nothing.
+Kernels are compiled by a tiny warm-up first, so that no figure contains compilation. The baseline holds one entry per
+machine (processor, cores, cells, conditions); a machine without one is told so and compared with nothing.
 """
 
 from __future__ import annotations

@@ -80,7 +80,6 @@ def controls() -> str:
 
 def command_line() -> str:
     """The help of every command, as the program prints it."""
-    import click
     import typer
 
     from spaceplane.cli import app
@@ -88,17 +87,17 @@ def command_line() -> str:
     root = typer.main.get_command(app)
     parts: list[str] = []
 
-    def section(command: click.Command, path: str, parent: click.Context | None) -> None:
-        context = click.Context(command, info_name=path.split()[-1], parent=parent)
+    def section(command: Any, path: str, parent: Any) -> None:
+        context = command.context_class(command, info_name=path.split()[-1], parent=parent)
         summary = (command.help or "").replace("\b\n", "").replace("\b", "").strip()
         parts.append(f"## `{path}`\n\n```\n{summary}\n```\n" if parent else f"{summary}\n")
-        if isinstance(command, click.Group):
+        if hasattr(command, "commands"):
             for name in command.list_commands(context):
                 section(command.get_command(context, name), f"{path} {name}", context)
             return
         rows = []
         for parameter in command.get_params(context):
-            if isinstance(parameter, click.Option):
+            if parameter.param_type_name == "option":
                 record = parameter.get_help_record(context)
                 if record and "--help" not in record[0]:
                     rows.append((f"`{record[0]}`".replace("|", "\\|"), record[1].replace("|", "\\|")))
@@ -109,6 +108,114 @@ def command_line() -> str:
 
     section(root, "spaceplane", None)
     return "\n".join(parts)
+
+
+def demo_extract(result: dict) -> dict:
+    """What the pages show of a result.json: no histories, matrices or loads by part."""
+    keep = (
+        "name",
+        "mach",
+        "altitude_m",
+        "alpha_deg",
+        "alpha_source",
+        "coefficients",
+        "derivatives",
+        "modes",
+        "verdicts",
+    )
+    points = []
+    for point in result["flight_points"]:
+        short = {key: point[key] for key in keep}
+        short["derivatives"] = {
+            name: {key: entry[key] for key in ("value", "error", "unit")}
+            for name, entry in point["derivatives"].items()
+        }
+        shown = ("name", "eigenvalue", "period_s", "half_time_s", "double_time_s", "damping_ratio", "oscillatory")
+        short["modes"] = [{key: mode[key] for key in shown} for mode in point["modes"]]
+        short["convergence"] = [
+            {key: entry[key] for key in ("label", "verdict", "residual_drop", "iterations")}
+            for entry in point["convergence"]
+        ]
+        points.append(short)
+    shown = ("geometry", "deflections_deg", "reference")
+    return {
+        "version": result["version"],
+        "vehicle": {key: result["vehicle"][key] for key in shown},
+        "mesh": {key: result["mesh"][key] for key in ("cells", "wall_cell_m")},
+        "solver": {key: result["solver"][key] for key in ("conditions", "precision")},
+        "flight_points": points,
+    }
+
+
+def demo() -> dict:
+    """The stored extract of the demo's result."""
+    return json.loads(DEMO.read_text(encoding="utf-8"))
+
+
+def number(value: float | None, digits: int = 4) -> str:
+    """A number with `digits` significant digits; a dash where there is none."""
+    return "-" if value is None else f"{value:.{digits}g}"
+
+
+def demo_summary() -> str:
+    """Size of the demo's mesh and ensemble, and how its conditions converged."""
+    result = demo()
+    verdicts = [entry["verdict"] for point in result["flight_points"] for entry in point["convergence"]]
+    size = result["vehicle"]["geometry"]
+    return (
+        f"{size['length_m']:.2f} m long, {size['span_m']:.2f} m in span; {result['mesh']['cells']} cells, wall cell "
+        f"{result['mesh']['wall_cell_m']:.3g} m; {verdicts.count('converged')} of {len(verdicts)} conditions converged."
+    )
+
+
+def demo_coefficients() -> str:
+    """Coefficients and static derivatives of the demo's flight points."""
+    points = demo()["flight_points"]
+    head = ["", *(f"Mach {point['mach']:g}" for point in points)]
+    rows = [["alpha, deg", *(f"{point['alpha_deg']:.1f}" for point in points)]]
+    rows += [[name, *(number(p["coefficients"][name]) for p in points)] for name in ("CL", "CD", "L_over_D", "Cm")]
+    for name in ("CL_alpha", "CD_alpha", "Cm_alpha", "CY_beta", "Cl_beta", "Cn_beta"):
+        rows.append([f"{name}, 1/rad", *(with_error(p["derivatives"].get(name)) for p in points)])
+    return table(head, rows, "l" + "r" * len(points))
+
+
+def with_error(entry: dict | None) -> str:
+    """A derivative and its error estimate."""
+    if entry is None or entry["value"] is None:
+        return "-"
+    return number(entry["value"]) + ("" if entry["error"] is None else f" ± {entry['error']:.1g}")
+
+
+def demo_modes() -> str:
+    """Eigenmodes of the demo's flight points with time scales and levels."""
+    rows = []
+    for point in demo()["flight_points"]:
+        for mode in point["modes"]:
+            re, im = mode["eigenvalue"]
+            value = f"{re:.4g}" + (f" ± {abs(im):.4g}i" if mode["oscillatory"] else "")
+            half, double = mode["half_time_s"], mode["double_time_s"]
+            time = f"half {half:.3g} s" if half is not None else "-" if double is None else f"doubles {double:.3g} s"
+            rows.append((f"{point['mach']:g}", mode["name"], value, time, number(mode["damping_ratio"], 3)))
+    return table(("Mach", "mode", "eigenvalue, 1/s", "amplitude", "damping ratio"), rows, "rlrrr")
+
+
+def demo_levels() -> str:
+    """Flying-quality levels of the demo's flight points."""
+    rows = []
+    for point in demo()["flight_points"]:
+        for verdict in point["verdicts"]:
+            level = "not applicable" if not verdict["applicable"] else verdict["level"]
+            rows.append(
+                (
+                    f"{point['mach']:g}",
+                    verdict["mode"],
+                    verdict["criterion"],
+                    verdict["paragraph"],
+                    number(verdict["value"], 3),
+                    "-" if level is None else level,
+                )
+            )
+    return table(("Mach", "mode", "criterion", "paragraph", "value", "level"), rows, "rlllrl")
 
 
 def mesh_settings() -> str:
@@ -146,6 +253,10 @@ BLOCKS: dict[str, Callable[[], str]] = {
     "command line": command_line,
     "mesh settings": mesh_settings,
     "flow settings": flow_settings,
+    "demo summary": demo_summary,
+    "demo coefficients": demo_coefficients,
+    "demo modes": demo_modes,
+    "demo levels": demo_levels,
     "validation cones": validation_block("cones"),
     "validation sphere": validation_block("sphere"),
     "validation horus": validation_block("horus"),

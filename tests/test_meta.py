@@ -32,6 +32,7 @@ ORDER = (
     "pipeline",
     "study",
     "validation",
+    "commands",
     "cli",
 )
 
