@@ -49,8 +49,8 @@ bench: $(VENV)/.installed
 	@$(PY) benchmarks/run.py
 
 lint: $(VENV)/.installed-dev
-	@$(PY) -m ruff check src tests examples benchmarks docs
-	@$(PY) -m ruff format --check src tests examples benchmarks docs
+	@$(PY) -m ruff check .
+	@$(PY) -m ruff format --check .
 
 clean:
 	rm -rf out site .pytest_cache .ruff_cache
