@@ -170,7 +170,7 @@ def body_flap_hinge(layout: Layout) -> Hinge:
     """Body flap below the base; its knuckle is sunk into the base."""
     s = layout.shape
     half_width, radius = 0.5 * s.body_flap_width_m, 0.16
-    if half_width > layout.chine - 0.35:
+    if half_width > layout.chine - 0.295:
         raise GeometryError(f"body_flap_width_m = {s.body_flap_width_m:g} m: wider than the fuselage's underside")
     x = layout.x_base + 0.3 * radius
     z = layout.z_keel + float(layout.underside(half_width)) + radius + 0.02
