@@ -31,6 +31,8 @@ class Mesh:
         piece_part: [piece] int32 index into `part_names`.
         part_names: names of the parts of the surface.
         record: what the generator has to say: counts, merged and split cells, warnings, seconds.
+        cell_cube_center: [cell, xyz] centre of the octree cube of edge `cell_size` that the cell lies in (a merged
+            cell: the cube of its largest member); None on imported meshes.
     """
 
     cell_volume: np.ndarray
@@ -51,6 +53,7 @@ class Mesh:
     piece_part: np.ndarray
     part_names: tuple[str, ...]
     record: dict = field(default_factory=dict)
+    cell_cube_center: np.ndarray | None = None
 
     @property
     def cells(self) -> int:

@@ -1,0 +1,280 @@
+"""From cut cells and octree leaves to one mesh: a common numbering, mirror image, merging, pieces of wall."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
+
+from spaceplane.mesh.agglomerate import combine_faces, merge_small, morton_order
+from spaceplane.mesh.cutcells import CutCells
+from spaceplane.mesh.mesh import Mesh
+from spaceplane.mesh.octree import Leaves
+
+
+@dataclass
+class Assembly:
+    """Cells, faces and surface polygons in wall cells, counted from the corner of the domain.
+
+    Attributes:
+        volume: [cell]; first the control volumes of cut cells, then leaves.
+        center: [cell, xyz] centroid.
+        size: [cell] edge of the cube.
+        cube: [cell, xyz] centre of the cube.
+        faces, face_area, face_center: interior faces, vectors from the first to the second cell.
+        far_cell, far_area, far_center: far-field faces, vectors out of the domain.
+        mirror_cell, mirror_area, mirror_center: faces on the plane of symmetry, vectors out of the right half.
+        polygon_cell, polygon_part, polygon_upstream: cell, part and orientation of each piece of surface.
+        polygon_area, polygon_size, polygon_center: area vector out of the fluid, area, centroid.
+    """
+
+    volume: np.ndarray
+    center: np.ndarray
+    size: np.ndarray
+    cube: np.ndarray
+    faces: np.ndarray
+    face_area: np.ndarray
+    face_center: np.ndarray
+    far_cell: np.ndarray
+    far_area: np.ndarray
+    far_center: np.ndarray
+    mirror_cell: np.ndarray
+    mirror_area: np.ndarray
+    mirror_center: np.ndarray
+    polygon_cell: np.ndarray
+    polygon_part: np.ndarray
+    polygon_upstream: np.ndarray
+    polygon_area: np.ndarray
+    polygon_size: np.ndarray
+    polygon_center: np.ndarray
+
+
+def _vectors(axis: np.ndarray, size: np.ndarray) -> np.ndarray:
+    """[face, xyz] vectors of the given size along the axes."""
+    vectors = np.zeros((len(axis), 3))
+    vectors[np.arange(len(axis)), axis] = size
+    return vectors
+
+
+def _leaf_faces(leaves: Leaves, leaf: np.ndarray, axis: np.ndarray, side: np.ndarray):
+    """Area and centre of the given side of each leaf."""
+    edge = (1 << leaves.level[leaf].astype(np.int64)).astype(np.float64)
+    center = (leaves.place[leaf] + 0.5) * edge[:, None]
+    center[np.arange(len(leaf)), axis] += (side - 0.5) * edge
+    return edge**2, center
+
+
+def assemble(
+    cut: CutCells, leaves: Leaves, shift: np.ndarray, part: np.ndarray, upstream: np.ndarray, half: bool
+) -> Assembly:
+    """Number control volumes and leaves together and list all faces.
+
+    Args:
+        cut: cut cells in a window whose cell [0, 0, 0] is cell `shift` of the domain.
+        leaves: uncut cells of the domain.
+        part: [triangle] part of the surface; upstream: [triangle] whether its outward normal has n_x < 0.
+        half: whether the domain's face y = 0 is a plane of symmetry.
+    """
+    first = len(cut.volume)
+    edge = (1 << leaves.level.astype(np.int64)).astype(np.float64)
+    cube = np.concatenate([cut.cell + shift + 0.5, (leaves.place + 0.5) * edge[:, None]])
+    center = cube.copy()
+    center[:first] = cut.center + shift
+
+    sides = cut.face_sides.astype(np.int64)
+    window = leaves.wall_index
+    mirror = np.zeros(len(sides), bool)
+    for side in range(2):
+        open_side = np.flatnonzero(sides[:, side] < 0)
+        place = cut.face_corner[open_side] + shift
+        if side == 0:
+            place[np.arange(len(open_side)), cut.face_axis[open_side]] -= 1
+        outside = (place[:, 1] < 0) & half
+        leaf = window.array[tuple((place - window.origin)[~outside].T)]
+        if len(leaf) and leaf.min() < 0:
+            raise RuntimeError("a fluid face of a cut cell has no cell beyond it")
+        sides[open_side[~outside], side] = first + leaf
+        mirror[open_side[outside]] = True
+    vectors = _vectors(cut.face_axis, cut.face_area)
+    centers = cut.face_center + shift
+
+    leaf_area, leaf_center = _leaf_faces(leaves, leaves.face_fine, leaves.face_axis, leaves.face_side)
+    far_size, far_center = _leaf_faces(leaves, leaves.far_leaf, leaves.far_axis, leaves.far_side)
+    far_area = _vectors(leaves.far_axis, far_size * (2 * leaves.far_side - 1))
+    far = ~((leaves.far_axis == 1) & (leaves.far_side == 0) & half)
+    return Assembly(
+        volume=np.concatenate([cut.volume, edge**3]),
+        center=center,
+        size=np.concatenate([np.ones(first), edge]),
+        cube=cube,
+        faces=np.concatenate([sides[~mirror], leaves.face_leaves + first]),
+        face_area=np.concatenate([vectors[~mirror], _vectors(leaves.face_axis, leaf_area)]),
+        face_center=np.concatenate([centers[~mirror], leaf_center]),
+        far_cell=leaves.far_leaf[far] + first,
+        far_area=far_area[far],
+        far_center=far_center[far],
+        mirror_cell=np.concatenate([sides[mirror, 1], leaves.far_leaf[~far] + first]),
+        mirror_area=np.concatenate([-vectors[mirror], far_area[~far]]),
+        mirror_center=np.concatenate([centers[mirror], far_center[~far]]),
+        polygon_cell=cut.polygon_volume.astype(np.int64),
+        polygon_part=part[cut.polygon_triangle],
+        polygon_upstream=upstream[cut.polygon_triangle],
+        polygon_area=cut.polygon_area,
+        polygon_size=cut.polygon_size,
+        polygon_center=cut.polygon_center + shift,
+    )
+
+
+def mirror(half: Assembly, partner: np.ndarray) -> Assembly:
+    """Add the mirror image in y = 0, which makes mirror faces interior. `partner` [part] is the other side's."""
+    flip = np.array([1.0, -1.0, 1.0])
+    n = len(half.volume)
+
+    def both(a: np.ndarray) -> np.ndarray:
+        return np.concatenate([a, a])
+
+    def image(a: np.ndarray) -> np.ndarray:
+        return np.concatenate([a, a * flip])
+
+    across = np.stack([half.mirror_cell + n, half.mirror_cell], axis=1)
+    return Assembly(
+        volume=both(half.volume),
+        center=image(half.center),
+        size=both(half.size),
+        cube=image(half.cube),
+        faces=np.concatenate([half.faces, half.faces + n, across]),
+        face_area=np.concatenate([half.face_area, half.face_area * flip, -half.mirror_area]),
+        face_center=np.concatenate([half.face_center, half.face_center * flip, half.mirror_center]),
+        far_cell=np.concatenate([half.far_cell, half.far_cell + n]),
+        far_area=image(half.far_area),
+        far_center=image(half.far_center),
+        mirror_cell=half.mirror_cell[:0],
+        mirror_area=half.mirror_area[:0],
+        mirror_center=half.mirror_center[:0],
+        polygon_cell=np.concatenate([half.polygon_cell, half.polygon_cell + n]),
+        polygon_part=np.concatenate([half.polygon_part, partner[half.polygon_part]]),
+        polygon_upstream=both(half.polygon_upstream),
+        polygon_area=image(half.polygon_area),
+        polygon_size=both(half.polygon_size),
+        polygon_center=image(half.polygon_center),
+    )
+
+
+def join_small(a: Assembly, fraction: float, root: np.ndarray | None = None) -> np.ndarray:
+    """[cell] the cell that stands for each cluster once volumes below `fraction` of their cube are merged.
+
+    Args:
+        root: clusters to start from, from an earlier call.
+    """
+    if root is None:
+        root = np.arange(len(a.volume))
+    volume = np.bincount(root, a.volume, minlength=len(root))
+    volume[root != np.arange(len(root))] = np.inf
+    ends = root[a.faces]
+    return merge_small(volume, fraction * a.size**3, ends, np.abs(a.face_area).sum(axis=1))[root]
+
+
+def reachable(a: Assembly, root: np.ndarray) -> np.ndarray:
+    """[cell] whether air can flow from the far field to the cell."""
+    n = len(root)
+    ends = root[a.faces]
+    graph = coo_matrix((np.ones(len(ends), np.int8), (ends[:, 0], ends[:, 1])), shape=(n, n))
+    _, label = connected_components(graph, directed=False)
+    outside = np.zeros(label.max() + 1, bool)
+    outside[label[root[a.far_cell]]] = True
+    return outside[label][root]
+
+
+def finish(a: Assembly, root: np.ndarray, kept: np.ndarray, cell: float, corner: np.ndarray, part_names: tuple) -> Mesh:
+    """Build the Mesh in metres: clusters become cells, ordered along a Morton curve.
+
+    Args:
+        root: [cell] representative of each cluster; kept: [cell] cells that stay.
+        cell: wall cell, m. corner: [xyz] of the grid's integer origin, m.
+    """
+    stands = np.flatnonzero((root == np.arange(len(root))) & kept)
+    place = 2.0 * a.cube[stands]
+    order = stands[morton_order((place - place.min(axis=0)).astype(np.int64))]
+    number = np.full(len(root), -1, np.int64)
+    number[order] = np.arange(len(order))
+    number = number[root]
+    n = len(order)
+
+    inside = number >= 0
+    index = number[inside]
+    volume = np.bincount(index, a.volume[inside], minlength=n)
+    center = np.stack([np.bincount(index, a.volume[inside] * x, minlength=n) for x in a.center[inside].T], axis=1)
+    center /= volume[:, None]
+    ends = number[a.faces]
+    real = (ends >= 0).all(axis=1)
+    faces, area, face_center = combine_faces(ends[real], a.face_area[real], a.face_center[real])
+    far_cell = number[a.far_cell]
+    wall = number[a.polygon_cell] >= 0
+    walls = _walls(a, number[a.polygon_cell], wall, len(part_names))
+    wall_cell = walls[0]
+    total = np.stack(
+        [
+            np.bincount(faces[:, 0], area[:, d], minlength=n)
+            - np.bincount(faces[:, 1], area[:, d], minlength=n)
+            + np.bincount(far_cell, a.far_area[:, d], minlength=n)
+            for d in range(3)
+        ],
+        axis=1,
+    )
+    return Mesh(
+        cell_volume=volume * cell**3,
+        cell_center=corner + center * cell,
+        cell_size=a.size[order] * cell,
+        face_cells=faces,
+        face_area=area * cell**2,
+        face_center=corner + face_center * cell,
+        wall_cell=wall_cell,
+        wall_area=-total[wall_cell] * cell**2,
+        wall_center=corner + walls[1] * cell,
+        far_cell=far_cell.astype(np.int32),
+        far_area=a.far_area * cell**2,
+        far_center=corner + a.far_center * cell,
+        piece_wall=walls[2],
+        piece_area=walls[3] * cell**2,
+        piece_center=corner + walls[4] * cell,
+        piece_part=walls[5],
+        part_names=part_names,
+        cell_cube_center=corner + a.cube[order] * cell,
+    )
+
+
+def _walls(a: Assembly, cell: np.ndarray, kept: np.ndarray, parts: int):
+    """Wall faces and their pieces from the surface polygons.
+
+    Returns:
+        wall cell, wall centre, piece wall, piece area vector, piece centre, piece part.
+    """
+    cell = cell[kept]
+    key = (cell * parts + a.polygon_part[kept]) * 2 + a.polygon_upstream[kept]
+    order = np.argsort(key, kind="stable")
+    key = key[order]
+    first = np.flatnonzero(np.concatenate([[True], key[1:] != key[:-1]])) if len(key) else np.zeros(0, np.int64)
+    size = a.polygon_size[kept][order]
+    weighted = np.concatenate([a.polygon_center[kept][order] * size[:, None], size[:, None]], axis=1)
+    sums = np.add.reduceat(weighted, first)
+    area = np.add.reduceat(a.polygon_area[kept][order], first)
+    piece_cell = key[first] // (2 * parts)
+    some = a.polygon_center[kept][order][first]
+    center = np.where(sums[:, 3:] > 1e-30, sums[:, :3] / np.maximum(sums[:, 3:], 1e-30), some)
+    new = np.flatnonzero(np.concatenate([[True], piece_cell[1:] != piece_cell[:-1]]))
+    wall_sums = np.add.reduceat(sums, new)
+    wall_center = np.where(
+        wall_sums[:, 3:] > 1e-30, wall_sums[:, :3] / np.maximum(wall_sums[:, 3:], 1e-30), center[new]
+    )
+    piece_wall = np.repeat(np.arange(len(new)), np.diff(np.concatenate([new, [len(piece_cell)]])))
+    part = (key[first] // 2) % parts
+    return (
+        piece_cell[new].astype(np.int32),
+        wall_center,
+        piece_wall.astype(np.int32),
+        area,
+        center,
+        part.astype(np.int32),
+    )

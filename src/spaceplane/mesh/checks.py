@@ -1,0 +1,128 @@
+"""What the mesh has to say about itself: counts, errors against the surface, warnings."""
+
+from __future__ import annotations
+
+import dataclasses
+import time
+
+import numpy as np
+
+from spaceplane.mesh.cutcells import CutCells
+from spaceplane.mesh.grid import Grid
+from spaceplane.mesh.mesh import Mesh
+from spaceplane.mesh.settings import MeshSettings
+from spaceplane.vehicle.surface import Surface
+
+# A part is called thin when more than this share of the grid lines through it leave it within two cells; below that it
+# is the rim near a sharp edge, which every wing has.
+THIN_SHARE = 0.25
+
+
+def describe(
+    mesh: Mesh,
+    surface: Surface,
+    settings: MeshSettings,
+    grid: Grid,
+    cut: CutCells,
+    shift: np.ndarray,
+    wetted: np.ndarray,
+    merged: int,
+    enclosed: float,
+    seconds: dict,
+) -> dict:
+    """The mesh's record.
+
+    Args:
+        shift: [xyz] cell of the domain that the window of `cut` begins with.
+        wetted: [part] wetted area, m2.
+        merged: control volumes merged into a neighbour.
+        enclosed: volume of air, m3, that the far field cannot reach and that was left out.
+        seconds: by phase.
+    """
+    begin = time.perf_counter()
+    sides = 2 if grid.half else 1
+    domain = np.prod(grid.size.astype(float)) * (grid.cell * 2**grid.levels) ** 3 * sides
+    volume = domain - float(mesh.cell_volume.sum()) - enclosed
+    by_part = _part_errors(mesh, surface, wetted)
+    warnings = _thin_warnings(cut, shift, surface, grid)
+    if enclosed > 0.0:
+        warnings.append(f"{enclosed:.4g} m3 of air enclosed by the body cannot be reached from outside and is left out")
+    if cut.folded_edges:
+        warnings.append(f"the surface folds over itself at {cut.folded_edges} cell edges")
+    closure = np.abs(mesh.closure()).max()
+    record = {
+        "cells": mesh.cells,
+        "faces": len(mesh.face_cells),
+        "wall_faces": len(mesh.wall_cell),
+        "pieces": len(mesh.piece_wall),
+        "far_faces": len(mesh.far_cell),
+        "cut_cells": sides * int(cut.cut.sum()),
+        "split_cells": sides * cut.split_cells,
+        "merged_cells": merged,
+        "wall_cell": grid.cell,
+        "wall_cell_m": grid.cell,
+        "levels": grid.levels + 1,
+        "symmetric": grid.half,
+        "grid_corner": [float(x) for x in grid.corner],
+        "domain": [
+            [float(x) for x in grid.lower],
+            [float(x) for x in grid.upper],
+        ],
+        "volume": volume,
+        "enclosed_volume": enclosed,
+        "volume_error": abs(volume - surface.volume) / surface.volume,
+        "area_error": max(errors["area"] for errors in by_part.values()),
+        "projected_area_error": max(max(errors["projected"]) for errors in by_part.values()),
+        "errors_by_part": by_part,
+        "closure": float(closure),
+        "gauss_error": cut.gauss_error,
+        "smallest_volume_fraction": float((mesh.cell_volume / mesh.cell_size**3).min()),
+        "settings": dataclasses.asdict(settings),
+        "warnings": warnings,
+    }
+    seconds = {**seconds, "checks": time.perf_counter() - begin}
+    record["seconds_by_phase"] = seconds
+    record["seconds"] = float(sum(seconds.values()))
+    return record
+
+
+def _part_errors(mesh: Mesh, surface: Surface, wetted: np.ndarray) -> dict:
+    """Wetted and projected area by part against the surface's, relative to the whole wetted area.
+
+    The projected areas are the part's summed area vectors, and for x also the share that faces upstream.
+    """
+    total = surface.area
+    size = np.linalg.norm(surface.area_vectors, axis=1)
+    upstream = surface.area_vectors[:, 0] < 0.0
+    mesh_upstream = mesh.piece_area[:, 0] > 0.0
+    errors = {}
+    for k, name in enumerate(surface.part_names):
+        theirs = surface.part == k
+        ours = mesh.piece_part == k
+        vector = mesh.piece_area[ours].sum(axis=0) + surface.area_vectors[theirs].sum(axis=0)
+        front = mesh.piece_area[ours & mesh_upstream, 0].sum() + surface.area_vectors[theirs & upstream, 0].sum()
+        errors[name] = {
+            "projected": [float(abs(x) / total) for x in (*vector, front)],
+            "area": float(abs(wetted[k] - size[theirs].sum()) / total),
+        }
+    return errors
+
+
+def _thin_warnings(cut: CutCells, shift: np.ndarray, surface: Surface, grid: Grid) -> list[str]:
+    """Name the parts that are mostly thinner than two cells, with a typical place."""
+    warnings = []
+    parts = len(surface.part_names)
+    examined = np.bincount(surface.part[cut.lines.astype(np.int64)], minlength=parts)
+    part = surface.part[cut.thin[:, 4].astype(np.int64)]
+    for k in range(parts):
+        here = cut.thin[part == k]
+        if len(here) == 0 or len(here) < THIN_SHARE * examined[k]:
+            continue
+        typical = here[np.argsort(here[:, 3])[len(here) // 2]]
+        x, y, z = grid.corner + (typical[:3] + shift) * grid.cell
+        warnings.append(
+            f"{surface.part_names[k]}: wall thinner than two cells over {len(here) / examined[k]:.0%} of it, "
+            f"for example {typical[3] * grid.cell:.3g} m at x={x:.3f} y={y:.3f} z={z:.3f} m "
+            f"(wall cell {grid.cell:.3g} m)"
+        )
+    return warnings

@@ -1,0 +1,150 @@
+"""From a surface to the mesh around it."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+import time
+
+import numpy as np
+
+from spaceplane.errors import InputError
+from spaceplane.mesh import assembly, octree
+from spaceplane.mesh.checks import describe
+from spaceplane.mesh.cutcells import CutCells, cut_cells
+from spaceplane.mesh.grid import Grid, boxes_in_cells, place_grid
+from spaceplane.mesh.mesh import Mesh
+from spaceplane.mesh.settings import MeshSettings
+from spaceplane.mesh.symmetry import is_symmetric, mirrored_parts
+from spaceplane.vehicle.surface import Surface
+
+# Cells of the dense window round the body that fit into memory with all its companions.
+LARGEST_WINDOW = 400_000_000
+# Room round the body in that window, cells below and above.
+PAD_BELOW, PAD_ABOVE = 2, 3
+
+
+def generate(surface: Surface, settings: MeshSettings | None = None) -> Mesh:
+    """Mesh the air around a closed surface with an octree whose cells the body cuts.
+
+    The wall is exact: wetted area, projected areas and volume equal the surface's, whatever the cell size. A surface
+    that mirrors itself in y = 0 is meshed as right half and mirror image, so that the mesh is exactly symmetric.
+
+    Args:
+        surface: closed triangulated surface, m.
+        settings: cell size and grading; None for the defaults.
+
+    Raises:
+        InputError: empty, open or folded surface; cells too many for memory; body too large for the domain.
+    """
+    settings = settings or MeshSettings()
+    _check(surface)
+    if settings.target_cells is None:
+        return _generate(surface, settings, _symmetric(surface, settings))
+    return _meet_target(surface, settings)
+
+
+def _check(surface: Surface) -> None:
+    """Refuse surfaces that bound no body."""
+    if len(surface.triangles) < 4 or len(surface.points) < 4:
+        raise InputError(f"surface: {len(surface.triangles)} triangles, a closed surface is needed")
+    if not np.isfinite(surface.points).all():
+        raise InputError("surface: a vertex coordinate is not a finite number")
+    if not surface.volume > 0.0:
+        raise InputError(
+            f"surface: volume {surface.volume:.6g} m3, must be above 0 (normals must point out of the body)"
+        )
+
+
+def _symmetric(surface: Surface, settings: MeshSettings) -> bool:
+    return is_symmetric(surface, 1) if settings.symmetric is None else settings.symmetric
+
+
+def _meet_target(surface: Surface, settings: MeshSettings) -> Mesh:
+    """Choose the wall cell by secant steps on log(cells) over log(wall cell), from a cheap first mesh."""
+    half = _symmetric(surface, settings)
+    cell = math.sqrt(surface.area / max(settings.target_cells / 25.0, 20.0))
+    slope = -2.0
+    previous = None
+    for _ in range(6):
+        mesh = _generate(surface, dataclasses.replace(settings, wall_cell=cell, target_cells=None), half)
+        if abs(mesh.cells / settings.target_cells - 1.0) <= 0.1:
+            break
+        point = (math.log(cell), math.log(mesh.cells))
+        if previous is not None and abs(point[0] - previous[0]) > 1e-6:
+            slope = min(max((point[1] - previous[1]) / (point[0] - previous[0]), -3.0), -0.5)
+        previous = point
+        cell = math.exp(point[0] + (math.log(settings.target_cells) - point[1]) / slope)
+    if abs(mesh.cells / settings.target_cells - 1.0) > 0.15:
+        mesh.record["warnings"].append(f"target_cells: {settings.target_cells} asked, {mesh.cells} reached")
+    return mesh
+
+
+def _cut(surface: Surface, grid: Grid) -> tuple[CutCells, np.ndarray]:
+    """Cut the cells round the body; also the domain cell that the window begins with."""
+    scaled = (surface.points - grid.corner) / grid.cell
+    lowest = np.floor(scaled.min(axis=0)).astype(np.int64) - PAD_BELOW
+    if grid.half:
+        lowest[1] = -PAD_BELOW
+    shape = np.floor(scaled.max(axis=0)).astype(np.int64) + 1 + PAD_ABOVE - lowest
+    cells = float(np.prod(shape.astype(np.float64)))
+    if cells > LARGEST_WINDOW:
+        raise InputError(
+            f"wall_cell: {grid.cell:.6g} m spans the body's box with {cells:.3g} cells, "
+            f"at most {LARGEST_WINDOW:.3g} allowed"
+        )
+    right_of = PAD_BELOW if grid.half else None
+    cut = cut_cells(scaled - lowest, surface.triangles, tuple(int(n) for n in shape), right_of)
+    return cut, lowest
+
+
+def _generate(surface: Surface, settings: MeshSettings, half: bool) -> Mesh:
+    """Mesh with the given wall cell."""
+    clock = time.perf_counter
+    begin = clock()
+    grid = place_grid(surface, settings, half)
+    expected = 3.0 * surface.area / grid.cell**2
+    if expected > settings.max_cells:
+        raise InputError(
+            f"wall_cell: {grid.cell:.6g} m gives more than {expected:.3g} cells, at most {settings.max_cells} allowed"
+        )
+    cut, shift = _cut(surface, grid)
+    cut_done = clock()
+
+    skip = -shift[1] if half else 0
+    window = octree.Window(shift + np.array([0, skip, 0]), cut.cut[:, skip:])
+    extent = grid.size * 2**grid.levels
+    if (window.origin < 0).any() or (window.origin + window.array.shape > extent).any():
+        raise InputError(f"far_field: {settings.far_field} body lengths, the body is larger than the domain")
+    refined = octree.refined_levels(
+        window, grid.size, grid.levels, settings.wall_layers, settings.growth_layers, boxes_in_cells(settings, grid)
+    )
+    expected = octree.count_leaves(refined) * (2 if half else 1)
+    if expected > settings.max_cells:
+        raise InputError(f"wall_cell: {grid.cell:.6g} m gives {expected} cells, at most {settings.max_cells} allowed")
+    leaves = octree.build_leaves(refined, octree.Window(shift, cut.fluid))
+    octree_done = clock()
+
+    upstream = surface.area_vectors[:, 0] < 0.0
+    whole = assembly.assemble(cut, leaves, shift, surface.part.astype(np.int64), upstream, half)
+    root = assembly.join_small(whole, settings.merge_fraction)
+    if half:
+        n = len(root)
+        whole = assembly.mirror(whole, mirrored_parts(surface.part_names))
+        root = assembly.join_small(whole, settings.merge_fraction, np.concatenate([root, root + n]))
+    kept = assembly.reachable(whole, root)
+    merge_done = clock()
+    mesh = assembly.finish(whole, root, kept, grid.cell, grid.corner, surface.part_names)
+    end = clock()
+    seconds = {
+        **cut.seconds,
+        "grid and symmetry": cut_done - begin - sum(cut.seconds.values()),
+        "octree": octree_done - cut_done,
+        "merging": merge_done - octree_done,
+        "assembly": end - merge_done,
+    }
+    wetted = np.bincount(whole.polygon_part, whole.polygon_size, minlength=len(surface.part_names)) * grid.cell**2
+    enclosed = float(whole.volume[~kept].sum()) * grid.cell**3
+    merged = int((root != np.arange(len(root))).sum())
+    mesh.record.update(describe(mesh, surface, settings, grid, cut, shift, wetted, merged, enclosed, seconds))
+    return mesh

@@ -1,0 +1,75 @@
+"""What a user may ask of the mesh."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from spaceplane.errors import InputError
+
+
+@dataclass(frozen=True)
+class RefinementBox:
+    """An axis-aligned box in which cells are no larger than `cell`.
+
+    Attributes:
+        lower: (x, y, z) lower corner, m.
+        upper: (x, y, z) upper corner, m.
+        cell: largest cell edge inside the box, m.
+    """
+
+    lower: tuple[float, float, float]
+    upper: tuple[float, float, float]
+    cell: float
+
+
+@dataclass(frozen=True)
+class MeshSettings:
+    """Size and grading of the octree. Lengths in m.
+
+    Attributes:
+        wall_cell: edge of the cells cut by the body, m.
+        target_cells: choose the wall cell so that about this many cells result (within 15 %); overrides `wall_cell`.
+        far_field: distance from the body's bounding box to the far field, in body lengths (its largest extent).
+        wall_layers: layers of wall-sized cells beside the cut cells; at least 1.
+        growth_layers: layers of cells of each coarser size before the next; at least 1.
+        merge_fraction: control volumes below this fraction of their cube are merged with a neighbour.
+        boxes: refinement boxes; mirrored on a body meshed as half and mirror image.
+        symmetric: mirror the mesh of the right half; None finds out whether the surface is symmetric about y = 0.
+        offset: (x, z) position of the body's lower corner within a wall cell, as a fraction of the cell.
+        max_cells: refuse to build more cells than this (about 1.5 kB of memory each while meshing).
+    """
+
+    wall_cell: float = 0.125
+    target_cells: int | None = None
+    far_field: float = 6.0
+    wall_layers: int = 3
+    growth_layers: int = 4
+    merge_fraction: float = 0.3
+    boxes: tuple[RefinementBox, ...] = ()
+    symmetric: bool | None = None
+    offset: tuple[float, float] = (0.38196601125, 0.2360679775)
+    max_cells: int = 12_000_000
+
+    def __post_init__(self) -> None:
+        """Refuse values that no mesh can have.
+
+        Raises:
+            InputError: naming the field, its value and what is allowed.
+        """
+        if not (math.isfinite(self.wall_cell) and self.wall_cell > 0.0):
+            raise InputError(f"wall_cell: {self.wall_cell} m, must be a finite length above 0")
+        if self.target_cells is not None and not 1000 <= self.target_cells <= self.max_cells:
+            raise InputError(f"target_cells: {self.target_cells}, allowed 1000 to {self.max_cells}")
+        if not (math.isfinite(self.far_field) and self.far_field >= 0.25):
+            raise InputError(f"far_field: {self.far_field} body lengths, must be a finite number of at least 0.25")
+        for name in ("wall_layers", "growth_layers"):
+            if getattr(self, name) < 1:
+                raise InputError(f"{name}: {getattr(self, name)}, must be at least 1")
+        if not 0.0 <= self.merge_fraction <= 0.9:
+            raise InputError(f"merge_fraction: {self.merge_fraction}, allowed 0 to 0.9")
+        for box in self.boxes:
+            if not (math.isfinite(box.cell) and box.cell > 0.0):
+                raise InputError(f"boxes: cell {box.cell} m, must be a finite length above 0")
+            if any(u <= low or not math.isfinite(u - low) for low, u in zip(box.lower, box.upper, strict=True)):
+                raise InputError(f"boxes: lower {box.lower}, upper {box.upper}; upper must lie above lower")

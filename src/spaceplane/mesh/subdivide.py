@@ -1,0 +1,423 @@
+"""One conforming subdivision of a closed triangulated surface by the planes of an integer grid.
+
+Everything is decided on integers: a vertex is given its slab along an axis once (a vertex on a plane belongs to the
+slab above), an edge is split once at every plane between its ends' slabs, and the two polygons beside it share the new
+vertices. Places of edges and polygons are inherited from then on. No tolerance is needed, whatever the quality of the
+triangles.
+
+Coordinates are in wall cells, so that grid planes lie at integers.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+
+from spaceplane.errors import InputError
+
+
+@dataclass(frozen=True)
+class Subdivision:
+    """A surface cut into polygons that each lie in one cell.
+
+    Attributes:
+        points: [vertex, xyz] in wall cells.
+        edge_ends: [edge, 2] vertices. A cut edge (tag >= 0) has fluid on its left in the plane, seen against the axis.
+        edge_tag: [edge] axis of the grid plane that the edge lies on, or -1.
+        edge_place: [edge, xyz] slab along each axis; the plane's index along the tag axis.
+        polygon_start: [polygon + 1] offsets into `loop`.
+        loop: directed edges, 2 * edge + reversed, counter-clockwise seen from the air.
+        polygon_triangle: [polygon] triangle of the surface that the polygon comes from.
+        polygon_place: [polygon, xyz] cell.
+        crossing_vertex: [crossing] vertex where the surface crosses a grid line.
+        crossing_axis: [crossing] axis along which the line runs.
+        crossing_sign: [crossing] +1 where the line enters the fluid going up, -1 where it leaves it.
+        crossing_place: [crossing, xyz] plane indices, and the slab along the line.
+        crossing_triangle: [crossing] a triangle at the crossing.
+    """
+
+    points: np.ndarray
+    edge_ends: np.ndarray
+    edge_tag: np.ndarray
+    edge_place: np.ndarray
+    polygon_start: np.ndarray
+    loop: np.ndarray
+    polygon_triangle: np.ndarray
+    polygon_place: np.ndarray
+    crossing_vertex: np.ndarray
+    crossing_axis: np.ndarray
+    crossing_sign: np.ndarray
+    crossing_place: np.ndarray
+    crossing_triangle: np.ndarray
+
+
+def pair_edges(triangles: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Give every pair of opposite half-edges one edge.
+
+    Args:
+        triangles: [triangle, 3] vertex indices.
+
+    Returns:
+        kept triangles (those with three different vertices), edge ends [edge, 2], loops [kept, 3] as
+        2 * edge + reversed.
+
+    Raises:
+        InputError: the surface is not closed.
+    """
+    a, b, c = triangles.T
+    kept = np.flatnonzero((a != b) & (b != c) & (c != a))
+    origin = triangles[kept].ravel()
+    target = triangles[kept][:, [1, 2, 0]].ravel()
+    count = int(triangles.max()) + 1
+    key = np.minimum(origin, target).astype(np.int64) * count + np.maximum(origin, target)
+    forward = np.flatnonzero(origin < target)
+    backward = np.flatnonzero(origin > target)
+    forward = forward[np.argsort(key[forward], kind="stable")]
+    backward = backward[np.argsort(key[backward], kind="stable")]
+    if len(forward) != len(backward) or np.any(key[forward] != key[backward]):
+        raise InputError("surface: not watertight (an edge has no opposite triangle), a closed surface is needed")
+    loop = np.empty(len(origin), np.int32)
+    numbers = np.arange(len(forward), dtype=np.int32)
+    loop[forward] = 2 * numbers
+    loop[backward] = 2 * numbers + 1
+    ends = np.stack([origin[forward], target[forward]], axis=1).astype(np.int32)
+    return kept, ends, loop.reshape(-1, 3)
+
+
+def subdivide(points: np.ndarray, triangles: np.ndarray, right_of: float | None = None) -> Subdivision:
+    """Cut a closed surface by all grid planes.
+
+    Args:
+        points: [vertex, xyz] in wall cells.
+        triangles: [triangle, 3] vertex indices, counter-clockwise seen from the air.
+        right_of: leave out triangles that have no vertex with y at or above this plane.
+
+    Raises:
+        InputError: the surface is not closed.
+    """
+    kept, ends, loops = pair_edges(triangles)
+    if right_of is not None:
+        needed = (points[triangles[kept], 1] >= right_of).any(axis=1)
+        kept, loops = kept[needed], loops[needed]
+        used = np.zeros(len(ends), bool)
+        used[loops >> 1] = True
+        number = (np.cumsum(used) - 1).astype(np.int32)
+        ends = ends[used]
+        loops = 2 * number[loops >> 1] + (loops & 1)
+    x = np.ascontiguousarray(points, dtype=np.float64)
+    tag = np.full(len(ends), -1, np.int8)
+    place = np.zeros((len(ends), 3), np.int32)
+    edge_triangle = np.full(len(ends), -1, np.int32)
+    start = np.arange(0, 3 * len(loops) + 1, 3, dtype=np.int32)
+    loop = loops.astype(np.int32).ravel()
+    triangle = kept.astype(np.int32)
+    cell = np.zeros((len(kept), 3), np.int32)
+    crossings = []
+    for axis in range(3):
+        slab = np.floor(x[:, axis]).astype(np.int32)
+        state = _fan(slab, ends, tag, place, edge_triangle, start, loop, triangle, cell)
+        ends, tag, place, edge_triangle, start, loop, triangle, cell = state
+        first = _first_parts(slab, ends)
+        x, ends2, tag2, place2, edge_triangle2, found = _split_edges(
+            axis, x, slab, ends, tag, place, edge_triangle, first
+        )
+        crossings.append(found)
+        state = _split_polygons(axis, slab, ends, first, ends2, start, loop, triangle, cell)
+        start, loop, triangle, cell, cut_ends, cut_place, cut_triangle = state
+        ends = np.concatenate([ends2, cut_ends])
+        tag = np.concatenate([tag2, np.full(len(cut_ends), axis, np.int8)])
+        place = np.concatenate([place2, cut_place])
+        edge_triangle = np.concatenate([edge_triangle2, cut_triangle])
+    vertex, line, sign, crossing_place, crossing_triangle = (
+        np.concatenate([found[n] for found in crossings]) for n in range(5)
+    )
+    along_z = line == 2
+    crossing_place[along_z, 2] = np.floor(x[vertex[along_z], 2]).astype(np.int32)
+    return Subdivision(
+        x, ends, tag, place, start, loop, triangle, cell, vertex, line, sign, crossing_place, crossing_triangle
+    )
+
+
+@njit(cache=True)
+def _turns(slab, ends, start, loop, p):
+    """Number of changes between rising and falling around polygon `p`: 0 or 2 when it is unimodal."""
+    first = 0
+    last = 0
+    turns = 0
+    for n in range(start[p], start[p + 1]):
+        e = loop[n] >> 1
+        r = loop[n] & 1
+        step = slab[ends[e, 1 - r]] - slab[ends[e, r]]
+        if step == 0:
+            continue
+        way = 1 if step > 0 else -1
+        if last == 0:
+            first = way
+        elif way != last:
+            turns += 1
+        last = way
+    if last != first:
+        turns += 1
+    return turns
+
+
+@njit(cache=True)
+def _fan(slab, ends, tag, place, edge_triangle, start, loop, triangle, cell):
+    """Replace polygons that rise more than once along the axis by fans of triangles."""
+    polygons = len(triangle)
+    bad = np.zeros(polygons, np.bool_)
+    more_edges = 0
+    for p in range(polygons):
+        if start[p + 1] - start[p] > 3 and _turns(slab, ends, start, loop, p) > 2:
+            bad[p] = True
+            more_edges += start[p + 1] - start[p] - 3
+    if more_edges == 0:
+        return ends, tag, place, edge_triangle, start, loop, triangle, cell
+    edges = len(ends)
+    ends2 = np.empty((edges + more_edges, 2), np.int32)
+    tag2 = np.full(edges + more_edges, -1, np.int8)
+    place2 = np.empty((edges + more_edges, 3), np.int32)
+    edge_triangle2 = np.full(edges + more_edges, -1, np.int32)
+    ends2[:edges] = ends
+    tag2[:edges] = tag
+    place2[:edges] = place
+    edge_triangle2[:edges] = edge_triangle
+    start2 = np.empty(polygons + more_edges + 1, np.int32)
+    loop2 = np.empty(len(loop) + 2 * more_edges, np.int32)
+    triangle2 = np.empty(polygons + more_edges, np.int32)
+    cell2 = np.empty((polygons + more_edges, 3), np.int32)
+    q = 0
+    n = 0
+    e = edges
+    for p in range(polygons):
+        s = start[p]
+        count = start[p + 1] - s
+        if not bad[p]:
+            start2[q] = n
+            triangle2[q] = triangle[p]
+            cell2[q] = cell[p]
+            for m in range(count):
+                loop2[n] = loop[s + m]
+                n += 1
+            q += 1
+            continue
+        apex = ends[loop[s] >> 1, loop[s] & 1]
+        entry = loop[s]
+        for m in range(1, count - 1):
+            start2[q] = n
+            triangle2[q] = triangle[p]
+            cell2[q] = cell[p]
+            code = loop[s + m]
+            loop2[n] = entry
+            loop2[n + 1] = code
+            if m == count - 2:
+                loop2[n + 2] = loop[s + count - 1]
+            else:
+                ends2[e, 0] = ends[code >> 1, 1 - (code & 1)]
+                ends2[e, 1] = apex
+                place2[e] = cell[p]
+                loop2[n + 2] = 2 * e
+                entry = 2 * e + 1
+                e += 1
+            n += 3
+            q += 1
+    start2[q] = n
+    return ends2, tag2, place2, edge_triangle2, start2, loop2, triangle2, cell2
+
+
+@njit(cache=True)
+def _first_parts(slab, ends):
+    """[edge + 1] number of the first part of each edge after splitting."""
+    first = np.empty(len(ends) + 1, np.int32)
+    n = 0
+    for e in range(len(ends)):
+        first[e] = n
+        n += 1 + abs(slab[ends[e, 1]] - slab[ends[e, 0]])
+    first[len(ends)] = n
+    return first
+
+
+@njit(cache=True)
+def _split_edges(axis, x, slab, ends, tag, place, edge_triangle, first):
+    """Split every edge at the planes between its ends' slabs; note where cut edges cross grid lines."""
+    edges = len(ends)
+    parts = first[edges]
+    vertices = len(x)
+    x2 = np.empty((vertices + parts - edges, 3))
+    x2[:vertices] = x
+    ends2 = np.empty((parts, 2), np.int32)
+    tag2 = np.empty(parts, np.int8)
+    place2 = np.empty((parts, 3), np.int32)
+    triangle2 = np.empty(parts, np.int32)
+    crossings = 0
+    for e in range(edges):
+        if tag[e] >= 0:
+            crossings += first[e + 1] - first[e] - 1
+    vertex = np.empty(crossings, np.int32)
+    line = np.empty(crossings, np.int8)
+    sign = np.empty(crossings, np.int8)
+    crossing_place = np.empty((crossings, 3), np.int32)
+    crossing_triangle = np.empty(crossings, np.int32)
+    v = vertices
+    w = 0
+    for e in range(edges):
+        a = ends[e, 0]
+        b = ends[e, 1]
+        s = slab[a]
+        count = first[e + 1] - first[e]
+        step = 1 if slab[b] > s else -1
+        previous = a
+        for n in range(count):
+            part = first[e] + n
+            tag2[part] = tag[e]
+            place2[part] = place[e]
+            place2[part, axis] = s
+            triangle2[part] = edge_triangle[e]
+            ends2[part, 0] = previous
+            if n == count - 1:
+                ends2[part, 1] = b
+                break
+            plane = s + 1 if step > 0 else s
+            t = (plane - x[a, axis]) / (x[b, axis] - x[a, axis])
+            for d in range(3):
+                low = min(x[a, d], x[b, d])
+                high = max(x[a, d], x[b, d])
+                x2[v, d] = min(max(x[a, d] + t * (x[b, d] - x[a, d]), low), high)
+            x2[v, axis] = plane
+            ends2[part, 1] = v
+            if tag[e] >= 0:
+                vertex[w] = v
+                line[w] = 3 - axis - tag[e]
+                # left of a segment that runs up the plane's first axis lies up its second one
+                sign[w] = step if axis == (tag[e] + 1) % 3 else -step
+                crossing_place[w] = place[e]
+                crossing_place[w, axis] = plane
+                crossing_triangle[w] = edge_triangle[e]
+                w += 1
+            previous = v
+            v += 1
+            s += step
+    return x2, ends2, tag2, place2, triangle2, (vertex, line, sign, crossing_place, crossing_triangle)
+
+
+@njit(cache=True)
+def _slab_range(slab, ends, start, loop, p):
+    """Lowest and highest slab of polygon `p`'s vertices."""
+    low = slab[ends[loop[start[p]] >> 1, loop[start[p]] & 1]]
+    high = low
+    for n in range(start[p] + 1, start[p + 1]):
+        s = slab[ends[loop[n] >> 1, loop[n] & 1]]
+        low = min(low, s)
+        high = max(high, s)
+    return low, high
+
+
+@njit(cache=True)
+def _expand(slab, ends, first, start, loop, p, low, codes, slabs):
+    """Write polygon `p`'s directed edge parts and their slabs, beginning where it comes down into slab `low`."""
+    count = 0
+    for n in range(start[p], start[p + 1]):
+        e = loop[n] >> 1
+        r = loop[n] & 1
+        parts = first[e + 1] - first[e]
+        s = slab[ends[e, r]]
+        step = 1 if slab[ends[e, 1 - r]] > s else -1
+        for m in range(parts):
+            part = first[e] + (parts - 1 - m if r else m)
+            codes[count] = 2 * part + r
+            slabs[count] = s + step * m
+            count += 1
+    begin = 0
+    for n in range(count):
+        if slabs[n] == low and slabs[(n + count - 1) % count] != low:
+            begin = n
+            break
+    if begin > 0:
+        rotated = np.empty(count, np.int32)
+        levels = np.empty(count, np.int32)
+        for n in range(count):
+            rotated[n] = codes[(n + begin) % count]
+            levels[n] = slabs[(n + begin) % count]
+        codes[:count] = rotated
+        slabs[:count] = levels
+    return count
+
+
+@njit(cache=True)
+def _split_polygons(axis, slab, ends, first, ends2, start, loop, triangle, cell):
+    """Split every polygon into its slab pieces; a new cut edge closes two pieces at each plane."""
+    polygons = len(triangle)
+    pieces = 0
+    entries = 0
+    cuts = 0
+    longest = 0
+    widest = 0
+    for p in range(polygons):
+        low, high = _slab_range(slab, ends, start, loop, p)
+        size = 0
+        for n in range(start[p], start[p + 1]):
+            size += first[(loop[n] >> 1) + 1] - first[loop[n] >> 1]
+        pieces += high - low + 1
+        cuts += high - low
+        entries += size + 2 * (high - low)
+        longest = max(longest, size)
+        widest = max(widest, high - low + 1)
+    start2 = np.empty(pieces + 1, np.int32)
+    loop2 = np.empty(entries, np.int32)
+    triangle2 = np.empty(pieces, np.int32)
+    cell2 = np.empty((pieces, 3), np.int32)
+    cut_ends = np.empty((cuts, 2), np.int32)
+    cut_place = np.empty((cuts, 3), np.int32)
+    cut_triangle = np.empty(cuts, np.int32)
+    codes = np.empty(longest, np.int32)
+    slabs = np.empty(longest, np.int32)
+    rise = np.empty(widest + 1, np.int32)
+    fall = np.empty(widest + 1, np.int32)
+    base = first[len(ends)]
+    q = 0
+    n = 0
+    cut = 0
+    for p in range(polygons):
+        low, high = _slab_range(slab, ends, start, loop, p)
+        count = _expand(slab, ends, first, start, loop, p, low, codes, slabs)
+        # rise[k]..rise[k+1] is the rising run in slab low+k, fall[k]..fall[k-1] the falling one
+        rise[0] = 0
+        top = high - low
+        for m in range(1, count):
+            if slabs[m] > slabs[m - 1]:
+                rise[slabs[m] - low] = m
+            elif slabs[m] < slabs[m - 1]:
+                fall[slabs[m] - low] = m
+        fall[0] = count
+        for k in range(top + 1):
+            start2[q] = n
+            triangle2[q] = triangle[p]
+            cell2[q] = cell[p]
+            cell2[q, axis] = low + k
+            stop = rise[k + 1] if k < top else (fall[k - 1] if k > 0 else count)
+            for m in range(rise[k], stop):
+                loop2[n] = codes[m]
+                n += 1
+            if k < top:
+                begin = codes[rise[k + 1]]
+                end = codes[fall[k] % count]
+                cut_ends[cut + k, 0] = ends2[begin >> 1, begin & 1]
+                cut_ends[cut + k, 1] = ends2[end >> 1, end & 1]
+                cut_place[cut + k] = cell[p]
+                cut_place[cut + k, axis] = low + k + 1
+                cut_triangle[cut + k] = triangle[p]
+                loop2[n] = 2 * (base + cut + k)
+                n += 1
+                if k > 0:
+                    for m in range(fall[k], fall[k - 1]):
+                        loop2[n] = codes[m]
+                        n += 1
+            if k > 0:
+                loop2[n] = 2 * (base + cut + k - 1) + 1
+                n += 1
+            q += 1
+        cut += top
+    start2[q] = n
+    return start2, loop2, triangle2, cell2, cut_ends, cut_place, cut_triangle
