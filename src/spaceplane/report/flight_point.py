@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from markupsafe import Markup, escape
 
-from spaceplane.report.names import GREEK, STATES, symbol, words
+from spaceplane.report.names import GREEK, STATES, split_derivative, symbol, words
 from spaceplane.report.numbers import MISSING, duration, fixed, grouped, is_number, measured, number
 from spaceplane.report.plots import convergence_plot, derivative_bars, eigenvalue_planes, eigenvalue_text, phase_clock
 from spaceplane.report.read import level_text
@@ -39,6 +39,7 @@ def point(p: dict) -> dict:
         "alpha_source": p.get("alpha_source") or "",
         **_parts(p),
         "derivative_bars": _derivative_bars(p),
+        **_controls(p),
         "planes": Markup(eigenvalue_planes(modes)),
         "modes": [_mode(m) for m in modes],
         **_eigenvectors(p, modes),
@@ -90,6 +91,23 @@ def _parts(p: dict) -> dict:
             cells.append({"text": fixed(value, 5), "heat": f"{0.22 * share:.3f}"})
         rows.append({"name": words(part), "cells": cells})
     return {"part_rows": rows, "part_symbols": [Markup(symbol(c)) for c in columns]}
+
+
+def _controls(p: dict) -> dict:
+    """Control derivatives as a matrix: a row for each surface, a column for each coefficient."""
+    found: dict[str, dict[str, dict]] = {}
+    for name, record in (p.get("derivatives") or {}).items():
+        parts = split_derivative(name)
+        if parts.control:
+            found.setdefault(parts.variable, {})[parts.coefficient] = record
+    columns = [c for c in PART_COEFFICIENTS if any(c in row for row in found.values())]
+    rows = []
+    for control, row in found.items():
+        cells = [measured((row.get(c) or {}).get("value"), (row.get(c) or {}).get("error")) for c in columns]
+        step = next((r for r in row.values() if is_number(r.get("step"))), {})
+        text = f"step {number(step.get('step'), 3)} {step.get('step_unit') or ''}" if step else ""
+        rows.append({"name": words(control), "cells": cells, "title": text})
+    return {"control_rows": rows, "control_symbols": [Markup(symbol(c)) for c in columns]}
 
 
 def _derivative_bars(p: dict) -> list[tuple[Markup, Markup]]:
@@ -188,7 +206,8 @@ def _limit(limit: object) -> str:
 def _convergence(record: dict) -> dict:
     spread = record.get("window_spread") or {}
     pieces = [
-        f"M {number(record.get('mach'), 3)}, α {fixed(record.get('alpha_deg'), 2)}°, β {fixed(record.get('beta_deg'), 1)}°",
+        f"M {number(record.get('mach'), 3)}, α {fixed(record.get('alpha_deg'), 2)}°, "
+        f"β {fixed(record.get('beta_deg'), 1)}°",
         f"{fixed(record.get('residual_drop'), 1)} decades in {grouped(record.get('iterations'))} iterations",
     ]
     if any(is_number(v) for v in spread.values()):

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 MISSING = "–"
 MINUS = "\u2212"
+LONG = 365.0 * 86400.0  # s
 _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
@@ -92,10 +93,14 @@ def duration(seconds: float | None) -> str:
         return f"{_signed(f'{seconds:.3g}')} s"
     if abs(seconds) < 120:
         return f"{_signed(f'{seconds:.0f}')} s"
+    if abs(seconds) > LONG:
+        return "over a year"
     whole = round(seconds)
     if abs(whole) < 7200:
         return f"{whole // 60} min {whole % 60:02d} s"
-    return f"{whole // 3600} h {whole % 3600 // 60:02d} min"
+    if abs(whole) < 172800:
+        return f"{whole // 3600} h {whole % 3600 // 60:02d} min"
+    return f"{whole // 86400} days"
 
 
 def _signed(text: str) -> str:

@@ -49,7 +49,7 @@ def _linear_width(modes: list[dict]) -> float:
 
 
 def _plane(modes: list[dict], linear_width: float | None, caption: str) -> str:
-    width, height, left, top = 560.0, 380.0, 62.0, 12.0
+    width, height, left, top = 560.0, 380.0, 68.0, 12.0
     reals = [m["eigenvalue"][0] for m in modes]
     largest_imaginary = max(max(abs(m["eigenvalue"][1]) for m in modes), 0.25 * max(map(abs, reals)), 1e-6)
     if linear_width is None:
@@ -64,33 +64,47 @@ def _plane(modes: list[dict], linear_width: float | None, caption: str) -> str:
     )
     zero, right, bottom = frame.x(0.0), frame.left + frame.width, frame.top + frame.height
     out = [
-        f'<rect class="unstable-half" x="{zero:.1f}" y="{top}" width="{max(right - zero, 0):.1f}" height="{frame.height}"/>',
+        f'<rect class="unstable-half" x="{zero:.1f}" y="{top}" width="{right - zero:.1f}" height="{frame.height}"/>',
         frame.axes("real part, 1/s", "imaginary part, rad/s", 6, 6),
         f'<line class="zero" x1="{zero:.1f}" x2="{zero:.1f}" y1="{top}" y2="{bottom}"/>',
         f'<line class="zero" x1="{left}" x2="{right}" y1="{frame.y(0):.1f}" y2="{frame.y(0):.1f}"/>',
         f'<text class="half-name" x="{right - 8}" y="{top + 16}" text-anchor="end">grows</text>',
         f'<text class="half-name decays" x="{left + 8}" y="{top + 16}">decays</text>',
     ]
-    for x, y, index, mode in _spread_markers(frame, modes):
+    marks = [
+        (frame.x(mode["eigenvalue"][0]), frame.y(part), index, mode)
+        for index, mode in enumerate(modes, 1)
+        for part in sorted({mode["eigenvalue"][1], -mode["eigenvalue"][1]})
+    ]
+    spots = _badge_spots([(x, y) for x, y, _, _ in marks], frame)
+    for (x, y, index, mode), (bx, by) in zip(marks, spots, strict=True):
         title = escape(mode_title(mode, index))
         css = "mode-marker grows" if mode["eigenvalue"][0] > 0 else "mode-marker"
+        leader = f'<line x1="{x:.1f}" y1="{y:.1f}" x2="{bx:.1f}" y2="{by:.1f}"/>' if (bx, by) != (x, y) else ""
         out.append(
-            f'<g class="{css}" tabindex="0" data-tip="{title}"><title>{title}</title>'
-            f'<circle cx="{x:.1f}" cy="{y:.1f}" r="9"/><text x="{x:.1f}" y="{y + 3.6:.1f}">{index}</text></g>'
+            f'<g class="{css}" tabindex="0" data-tip="{title}"><title>{title}</title>{leader}'
+            f'<circle class="spot" cx="{x:.1f}" cy="{y:.1f}" r="3.5"/>'
+            f'<circle cx="{bx:.1f}" cy="{by:.1f}" r="9"/><text x="{bx:.1f}" y="{by + 3.6:.1f}">{index}</text></g>'
         )
     return f"<figure>{drawing(width, height, *out, title=caption)}<figcaption>{escape(caption)}</figcaption></figure>"
 
 
-def _spread_markers(frame: Frame, modes: list[dict]) -> list[tuple[float, float, int, dict]]:
-    """Marker positions, both halves of a pair; one that would cover an earlier one moves up by a marker's width."""
-    placed: list[tuple[float, float, int, dict]] = []
-    for index, mode in enumerate(modes, 1):
-        real, imaginary = mode["eigenvalue"]
-        for part in {imaginary, -imaginary}:
-            x, y = frame.x(real), frame.y(part)
-            while any(abs(x - px) < 14 and abs(y - py) < 14 for px, py, _, _ in placed):
-                y -= 15
-            placed.append((x, y, index, mode))
+def _badge_spots(points: list[tuple[float, float]], frame: Frame) -> list[tuple[float, float]]:
+    """Where each point's numbered badge goes: on the point, or beside it where another badge or point is in the way."""
+    angles = [math.radians(a) for a in (90, 50, 130, 20, 160, -20, -160, -50, -130, -90)]
+    around = [(reach * math.cos(a), -reach * math.sin(a)) for reach in (26.0, 46.0, 66.0, 86.0) for a in angles]
+    placed: list[tuple[float, float]] = []
+    for k, (x, y) in enumerate(points):
+        others = points[:k] + points[k + 1 :]
+        for dx, dy in [(0.0, 0.0), *around]:
+            bx, by = x + dx, y + dy
+            free = all(math.hypot(bx - px, by - py) >= 19 for px, py in placed)
+            clear = all(math.hypot(bx - px, by - py) >= 13 for px, py in others)
+            inside = frame.left + 9 <= bx <= frame.left + frame.width - 9
+            inside = inside and frame.top + 9 <= by <= frame.top + frame.height - 9
+            if free and clear and inside:
+                break
+        placed.append((bx, by))
     return placed
 
 
@@ -139,7 +153,8 @@ def phase_clock(magnitude: float, phase_deg: float) -> str:
     return (
         f'<svg class="clock" viewBox="0 0 {size:g} {size:g}" width="26" height="26" aria-hidden="true">'
         f'<circle cx="{center}" cy="{center}" r="{reach}"/>'
-        f'<line x1="{center}" y1="{center}" x2="{x:.1f}" y2="{y:.1f}"/><circle class="tip" cx="{x:.1f}" cy="{y:.1f}" r="2"/></svg>'
+        f'<line x1="{center}" y1="{center}" x2="{x:.1f}" y2="{y:.1f}"/>'
+        f'<circle class="tip" cx="{x:.1f}" cy="{y:.1f}" r="2"/></svg>'
     )
 
 
@@ -156,8 +171,9 @@ def range_bar(value: float, lower: float, upper: float, default: float | None = 
     tick = ""
     if default is not None:
         tick = f'<line class="default" x1="{place(default):.1f}" x2="{place(default):.1f}" y1="2" y2="12"/>'
+    size = f'viewBox="0 0 {width:g} {height:g}" width="{width:g}" height="{height:g}"'
     return (
-        f'<svg class="range" viewBox="0 0 {width:g} {height:g}" width="{width:g}" height="{height:g}" aria-hidden="true">'
+        f'<svg class="range" {size} aria-hidden="true">'
         f'<line class="rail" x1="4" x2="{width - 4}" y1="7" y2="7"/>{tick}'
         f'<circle cx="{place(value):.1f}" cy="7" r="4"/></svg>'
     )

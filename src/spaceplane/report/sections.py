@@ -31,6 +31,7 @@ FLIGHT_ROWS = (
 )
 RATES = (("Roll rate", "p_rads"), ("Pitch rate", "q_rads"), ("Yaw rate", "r_rads"))
 VARIABLE_GROUPS = (("alpha", "Angle of attack"), ("beta", "Sideslip"), ("M", "Mach number"), ("mach", "Mach number"))
+UNITS = {"1/rad": "per rad", "1": "per unit Mach", "": "per unit Mach"}
 MESH_ROWS = (
     ("Cells", "cells"),
     ("Split cells", "split_cells"),
@@ -155,17 +156,20 @@ def _coefficient_rows(points: list[dict]) -> list[dict]:
 
 
 def _coefficient(value: float | None) -> str:
-    """Four significant digits, but never below the fifth decimal: smaller is noise."""
+    """Four significant digits or five decimals; two digits for what is zero by symmetry, so that its size shows."""
+    if is_number(value) and abs(value) < 1e-4:
+        return number(value, 2)
     return fixed(value, 5) if is_number(value) and abs(value) < 0.1 else number(value, 4)
 
 
 def _derivative_groups(points: list[dict]) -> list[dict]:
     names = list(dict.fromkeys(name for p in points for name in p.get("derivatives") or {}))
+    names = [name for name in names if not split_derivative(name).control]
     grouped_names: dict[str, list[str]] = {}
     labels = dict(VARIABLE_GROUPS)
     for name in names:
         parts = split_derivative(name)
-        title = labels.get(parts.variable) or ("Rates" if not parts.control else f"Control: {words(parts.variable)}")
+        title = labels.get(parts.variable, "Rates")
         grouped_names.setdefault(title, []).append(name)
     return [
         {"name": title, "rows": [_derivative_row(n, points) for n in group]} for title, group in grouped_names.items()
@@ -180,7 +184,7 @@ def _derivative_row(name: str, points: list[dict]) -> dict:
     return {
         "symbol": Markup(symbol(name)),
         "what": meaning(name),
-        "unit": first.get("unit") or "",
+        "unit": UNITS.get(first.get("unit"), first.get("unit") or ""),
         "title": f"{name}{step}",
         "cells": cells,
     }

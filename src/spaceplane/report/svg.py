@@ -89,31 +89,43 @@ class Frame:
     def y(self, value: float) -> float:
         return self.top + self.height * (1.0 - self.y_scale(value))
 
+    def _labelled(self, ticks: list[float], along: float, scale: Scale, room: float) -> set[float]:
+        """Ticks that get a label: zero first, then outward, none closer than `room` pixels to another."""
+        chosen: list[float] = []
+        order = [0.0] if 0.0 in ticks else []
+        order += sorted((t for t in ticks if t != 0.0), key=lambda t: -abs(t))
+        for tick in order:
+            if all(abs(scale(tick) - scale(other)) * along >= room for other in chosen):
+                chosen.append(tick)
+        return set(chosen)
+
     def axes(self, x_label: str = "", y_label: str = "", x_ticks: int = 5, y_ticks: int = 5) -> str:
         """Grid, ticks, labels and border."""
         bottom, right = self.top + self.height, self.left + self.width
         out = [f'<rect class="frame" x="{self.left}" y="{self.top}" width="{self.width}" height="{self.height}"/>']
-        for tick in self.x_scale.ticks(x_ticks):
+        ticks = self.x_scale.ticks(x_ticks)
+        labelled = self._labelled(ticks, self.width, self.x_scale, 36)
+        for tick in ticks:
             x = self.x(tick)
             out.append(f'<line class="grid" x1="{x:.1f}" x2="{x:.1f}" y1="{self.top}" y2="{bottom}"/>')
-            out.append(
-                f'<text class="tick" x="{x:.1f}" y="{bottom + 13}" text-anchor="middle">{tick_text(tick)}</text>'
-            )
-        for tick in self.y_scale.ticks(y_ticks):
+            if tick in labelled:
+                place = f'x="{x:.1f}" y="{bottom + 13}" text-anchor="middle"'
+                out.append(f'<text class="tick" {place}>{tick_text(tick)}</text>')
+        ticks = self.y_scale.ticks(y_ticks)
+        labelled = self._labelled(ticks, self.height, self.y_scale, 14)
+        for tick in ticks:
             y = self.y(tick)
             out.append(f'<line class="grid" x1="{self.left}" x2="{right}" y1="{y:.1f}" y2="{y:.1f}"/>')
-            out.append(
-                f'<text class="tick" x="{self.left - 6}" y="{y + 3.5:.1f}" text-anchor="end">{tick_text(tick)}</text>'
-            )
+            if tick in labelled:
+                place = f'x="{self.left - 6}" y="{y + 3.5:.1f}" text-anchor="end"'
+                out.append(f'<text class="tick" {place}>{tick_text(tick)}</text>')
         if x_label:
-            middle = self.left + self.width / 2
-            out.append(
-                f'<text class="label" x="{middle}" y="{bottom + 30}" text-anchor="middle">{escape(x_label)}</text>'
-            )
+            place = f'x="{self.left + self.width / 2}" y="{bottom + 30}" text-anchor="middle"'
+            out.append(f'<text class="label" {place}>{escape(x_label)}</text>')
         if y_label:
-            x, y = self.left - 44, self.top + self.height / 2
-            turn = f'transform="rotate(-90 {x} {y})"'
-            out.append(f'<text class="label" x="{x}" y="{y}" text-anchor="middle" {turn}>{escape(y_label)}</text>')
+            x, y = self.left - 50, self.top + self.height / 2
+            place = f'x="{x}" y="{y}" text-anchor="middle" transform="rotate(-90 {x} {y})"'
+            out.append(f'<text class="label" {place}>{escape(y_label)}</text>')
         return "".join(out)
 
     def line(self, xs: Sequence[float], ys: Sequence[float], css: str, title: str = "") -> str:

@@ -1,0 +1,115 @@
+"""`spaceplane analyse`: from a vehicle to its flying qualities."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from spaceplane.commands import options
+from spaceplane.commands.arguments import mach_numbers, numbers, writable_file, writable_folder, write_json
+from spaceplane.commands.progress import progress_bar
+from spaceplane.errors import InputError
+
+if TYPE_CHECKING:
+    from spaceplane.pipeline import AnalyseSettings
+
+EXAMPLE = (
+    "Example: spaceplane analyse horus-2b --set wing_width_m=3.9 --deflect body_flap=-10 --mach 0.8,1.5,2.5 "
+    "--out out/wide"
+)
+
+
+def analyse(
+    vehicle: options.VehicleName,
+    changes: options.Changes = None,
+    deflect: options.Deflections = None,
+    mach: Annotated[
+        str, typer.Option("--mach", metavar="M[,M...]", help="Flight points by Mach number.")
+    ] = "0.8,1.5,2.5",
+    alpha: Annotated[
+        str | None,
+        typer.Option(
+            "--alpha", metavar="DEG[,DEG...]", help="Angle of attack of each flight point; one value serves all."
+        ),
+    ] = None,
+    out: Annotated[
+        Path | None, typer.Option("--out", metavar="DIR", help="Folder to write into; out/VEHICLE by default.")
+    ] = None,
+    cell: options.Cell = None,
+    cells: options.Cells = None,
+    precision: options.Precision = "fp32",
+    form: Annotated[
+        str, typer.Option("--form", metavar="rigid-body|thesis", help="Form of the linear model.")
+    ] = "rigid-body",
+    vehicle_class: Annotated[
+        str, typer.Option("--class", metavar="I..IV", help="Vehicle class of MIL-F-8785C.")
+    ] = "III",
+    category: Annotated[
+        str, typer.Option("--category", metavar="A|B|C", help="Flight phase category of MIL-F-8785C.")
+    ] = "B",
+    controls: Annotated[
+        bool, typer.Option(help="Derivatives of the control surfaces (a body and mesh more for each).")
+    ] = True,
+    two_steps: Annotated[bool, typer.Option("--two-steps", help="Two step sizes for each derivative.")] = False,
+    allow_outside_limits: options.AllowOutside = False,
+    json_file: options.JsonFile = None,
+) -> int:
+    """Geometry, flow, derivatives, modes, flying-quality levels and a report of one vehicle.
+
+    Writes result.json, aero.nc, geometry.stl, surface.vtp and report.html into --out. Exit code 0 when every flow
+    condition converged, 1 when one did not, 2 for bad input.
+    """
+    machs = mach_numbers(mach)
+    folder = out or Path("out") / re.sub(r"[^\w.-]+", "-", Path(vehicle).stem if "/" in vehicle else vehicle)
+    subject = options.load_vehicle(vehicle, changes, allow_outside_limits)
+    settings = _settings(machs, alpha, deflect, allow_outside_limits, cell, cells, precision)
+    steps = replace(settings.steps, two_step_sizes=True) if two_steps else settings.steps
+    settings = replace(
+        settings, form=form, vehicle_class=vehicle_class, category=category, controls=controls, steps=steps
+    )
+    writable_folder(folder)
+    writable_file(json_file, "--json")
+    from spaceplane import pipeline
+    from spaceplane.report.read import read_result
+    from spaceplane.report.summary import print_summary, shortcomings
+
+    with progress_bar() as tell:
+        pipeline.run(subject, settings, folder, tell)
+    result = read_result(folder)
+    write_json(result, json_file)
+    if str(json_file) != "-":
+        print_summary(result, folder / "report.html")
+    problems = shortcomings(result)
+    if problems:
+        typer.echo(f"not good: {'; '.join(problems[:3])}{' ...' if problems[3:] else ''}", err=True)
+    return 1 if problems else 0
+
+
+def _settings(
+    machs: list[float],
+    alpha: str | None,
+    deflect: list[str] | None,
+    allow_outside_limits: bool,
+    cell: str | None,
+    cells: str | None,
+    precision: str,
+) -> AnalyseSettings:
+    solver_precision = options.precision(precision)
+    alphas = None if alpha is None else numbers("--alpha", alpha, "degrees")
+    if alphas is not None and len(alphas) not in (1, len(machs)):
+        raise InputError(f"--alpha: {len(alphas)} values for {len(machs)} Mach numbers; give one, or one for each")
+    from spaceplane.pipeline import AnalyseSettings
+
+    default = AnalyseSettings()
+    return replace(
+        default,
+        mach=tuple(machs),
+        alpha_deg=None if alphas is None else tuple(alphas * len(machs) if len(alphas) == 1 else alphas),
+        deflections=options.load_deflections(deflect, allow_outside_limits, default.deflections.to_degrees()),
+        mesh=options.mesh_settings(cell, cells, default.mesh),
+        flow=replace(default.flow, precision=solver_precision),
+    )

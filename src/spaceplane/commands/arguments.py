@@ -1,0 +1,201 @@
+"""Text from the command line to values, and folders that can be written."""
+
+from __future__ import annotations
+
+import math
+import os
+import sys
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+
+from spaceplane.errors import InputError
+
+ASSIGNING = ("--set", "--deflect")
+
+
+def spread_assignments(arguments: Sequence[str]) -> list[str]:
+    """Let one --set or --deflect take several values: `--set a=1 b=2` becomes `--set a=1 --set b=2`."""
+    spread: list[str] = []
+    option = ""
+    taken = False
+    for argument in arguments:
+        if argument in ASSIGNING:
+            option, taken = argument, False
+        elif option and not taken:
+            taken = True
+        elif option and "=" in argument and not argument.startswith("-"):
+            spread.append(option)
+        else:
+            option = ""
+        spread.append(argument)
+    return spread
+
+
+def number(option: str, text: str, unit: str = "") -> float:
+    """A finite number.
+
+    Raises:
+        InputError: naming the option and the text.
+    """
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise InputError(f"{option}: {text.strip()!r} is not a number{f' ({unit})' if unit else ''}")
+    return value
+
+
+def numbers(option: str, text: str, unit: str = "", count: int | None = None) -> list[float]:
+    """Numbers between commas; blanks around them are fine.
+
+    Raises:
+        InputError: empty, not a number, or not `count` of them.
+    """
+    if not text.strip():
+        raise InputError(f"{option}: empty; give {count or 'one or more'} numbers between commas{_of(unit)}")
+    values = [number(option, piece, unit) for piece in text.split(",")]
+    if count is not None and len(values) != count:
+        raise InputError(f"{option}: {text.strip()!r} has {len(values)} numbers, {count} are needed{_of(unit)}")
+    return values
+
+
+def mach_numbers(text: str, option: str = "--mach") -> list[float]:
+    """Mach numbers above 0, each once.
+
+    Raises:
+        InputError: as `numbers`, or one that is not above 0 or given twice.
+    """
+    values = numbers(option, text)
+    for k, value in enumerate(values):
+        if value <= 0:
+            raise InputError(f"{option}: {value:g}, must be above 0")
+        if value in values[:k]:
+            raise InputError(f"{option}: {value:g} is given twice")
+    return values
+
+
+def angles(option: str, text: str, limit_deg: float = 90.0) -> list[float]:
+    """Angles in degrees within +-`limit_deg`, each once, as radians.
+
+    Raises:
+        InputError: as `numbers`, or one out of range or given twice.
+    """
+    values = numbers(option, text, "degrees")
+    for k, value in enumerate(values):
+        if abs(value) > limit_deg:
+            raise InputError(f"{option}: {value:g} deg, allowed -{limit_deg:g} to {limit_deg:g} deg")
+        if value in values[:k]:
+            raise InputError(f"{option}: {value:g} deg is given twice")
+    return [math.radians(value) for value in values]
+
+
+def positive(option: str, text: str, unit: str) -> float:
+    """A number above 0.
+
+    Raises:
+        InputError: not a number, or not above 0.
+    """
+    value = number(option, text, unit)
+    if value <= 0:
+        raise InputError(f"{option}: {value:g} {unit}, must be above 0")
+    return value
+
+
+def assignments(option: str, texts: Sequence[str] | None) -> dict[str, float]:
+    """`name=value` texts (also several between commas) as a dict.
+
+    Raises:
+        InputError: no `=`, no name, a value that is not a number, or a name given twice.
+    """
+    found: dict[str, float] = {}
+    for piece in (p for text in texts or () for p in text.split(",")):
+        name, equals, value = piece.partition("=")
+        name = name.strip().replace("-", "_")
+        if not equals or not name:
+            raise InputError(f"{option}: {piece.strip()!r} is not name=value")
+        if name in found:
+            raise InputError(f"{option}: {name} is given twice")
+        found[name] = number(f"{option} {name}", value)
+    return found
+
+
+def existing_file(path: Path, what: str) -> Path:
+    """`path`, when it is a file that can be read.
+
+    Raises:
+        InputError: it is missing, a folder or not readable.
+    """
+    if path.is_dir():
+        raise InputError(f"{path}: is a folder, {what} is needed")
+    if not path.exists():
+        raise InputError(f"{path}: no such file ({what} is needed)")
+    if not os.access(path, os.R_OK):
+        raise InputError(f"{path}: cannot be read (permission denied)")
+    return path
+
+
+def writable_folder(path: Path, option: str = "--out") -> Path:
+    """Make `path` as a folder and try to write in it, before anything is computed.
+
+    Raises:
+        InputError: it cannot be made or written.
+    """
+    if path.exists() and not path.is_dir():
+        raise InputError(f"{option}: {path} is a file, a folder is needed")
+    probe = path / f".spaceplane-{os.getpid()}"
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+        probe.write_bytes(b"")
+        probe.unlink()
+    except OSError as error:
+        raise InputError(f"{option}: {path} cannot be written ({error.strerror})") from error
+    return path
+
+
+def writable_file(path: Path | None, option: str, suffixes: Sequence[str] = ()) -> Path | None:
+    """`path` when it can be written (its folder is made); `None` and `-` (standard output) pass.
+
+    Raises:
+        InputError: a folder, a wrong suffix, or a place that cannot be written.
+    """
+    if path is None or str(path) == "-":
+        return path
+    if suffixes and path.suffix.lower() not in suffixes:
+        raise InputError(f"{option}: {path} must end in {', '.join(suffixes)}")
+    if path.is_dir():
+        raise InputError(f"{option}: {path} is a folder, a file is needed")
+    if path.exists() and not os.access(path, os.W_OK):
+        raise InputError(f"{option}: {path} cannot be written (permission denied)")
+    writable_folder(path.parent, option)
+    return path
+
+
+@contextmanager
+def renamed_when_done(path: Path) -> Iterator[Path]:
+    """A name beside `path` to write to; it takes `path`'s place only when the block ends well."""
+    partial = path.with_name(f".{path.stem}-{os.getpid()}{path.suffix}")
+    try:
+        yield partial
+        partial.replace(path)
+    finally:
+        partial.unlink(missing_ok=True)
+
+
+def write_json(record: object, path: Path | None) -> None:
+    """Write `record` as JSON to `path`, or to standard output for `-`; nothing for None."""
+    import json
+
+    if path is None:
+        return
+    text = json.dumps(record, indent=1, allow_nan=False, ensure_ascii=False) + "\n"
+    if str(path) == "-":
+        sys.stdout.write(text)
+        return
+    with renamed_when_done(path) as partial:
+        partial.write_text(text, encoding="utf-8")
+
+
+def _of(unit: str) -> str:
+    return f", in {unit}" if unit else ""

@@ -1,0 +1,113 @@
+"""`spaceplane flow`: any watertight body in any list of free streams."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from spaceplane.commands import options
+from spaceplane.commands.arguments import (
+    angles,
+    existing_file,
+    mach_numbers,
+    numbers,
+    positive,
+    renamed_when_done,
+    writable_file,
+    write_json,
+)
+from spaceplane.commands.progress import progress_bar
+from spaceplane.errors import InputError
+
+if TYPE_CHECKING:
+    from spaceplane.aero.flow_case import FlowCase
+
+EXAMPLE = (
+    "Example: spaceplane flow cone.stl --mach 1.5,3 --alpha 0,5 --area 1 --length 2 --span 1 --moment-center 0,0,0 "
+    "--cell 0.05 --json cone.json"
+)
+
+
+def flow(
+    body: Annotated[Path, typer.Argument(metavar="BODY.stl", help="Watertight body, metres; x aft, y right, z up.")],
+    mach: Annotated[str, typer.Option("--mach", metavar="M[,M...]", help="Mach numbers.")],
+    area: Annotated[str, typer.Option("--area", metavar="M2", help="Reference area.")],
+    length: Annotated[str, typer.Option("--length", metavar="M", help="Reference length of the pitching moment.")],
+    span: Annotated[str, typer.Option("--span", metavar="M", help="Reference length of rolling and yawing moment.")],
+    moment_center: Annotated[
+        str, typer.Option("--moment-center", metavar="x,y,z", help="Moment reference point, metres.")
+    ],
+    alpha: Annotated[str, typer.Option("--alpha", metavar="DEG[,DEG...]", help="Angles of attack, degrees.")] = "0",
+    beta: Annotated[
+        str, typer.Option("--beta", metavar="DEG[,DEG...]", help="Sideslip, degrees, wind from the right positive.")
+    ] = "0",
+    rates: Annotated[
+        str,
+        typer.Option("--rates", metavar="p,q,r", help="Body rates, rad/s; this version solves 0,0,0 only."),
+    ] = "0,0,0",
+    cell: options.Cell = None,
+    cells: options.Cells = None,
+    precision: options.Precision = "fp32",
+    json_file: options.JsonFile = None,
+    vtu: Annotated[Path | None, typer.Option("--vtu", metavar="FILE", help="Write the flow for ParaView.")] = None,
+    vtp: Annotated[
+        Path | None, typer.Option("--vtp", metavar="FILE", help="Write the wall with its pressure for ParaView.")
+    ] = None,
+) -> int:
+    """Inviscid flow about a body: every Mach number with every angle, all on one mesh in one run.
+
+    Exit code 0 when every condition converged, 1 when one did not, 2 for bad input.
+    """
+    machs, alphas, betas = mach_numbers(mach), angles("--alpha", alpha), angles("--beta", beta)
+    if any(numbers("--rates", rates, "rad/s", 3)):
+        raise InputError(f"--rates: {rates}, this version allows 0,0,0 only (the body does not turn)")
+    lengths = {
+        "area": positive("--area", area, "m2"),
+        "chord": positive("--length", length, "m"),
+        "span": positive("--span", span, "m"),
+    }
+    center = tuple(numbers("--moment-center", moment_center, "m", 3))
+    solver_precision = options.precision(precision)
+    existing_file(body, "an STL file")
+    writable_file(json_file, "--json")
+    writable_file(vtu, "--vtu", (".vtu",))
+    writable_file(vtp, "--vtp", (".vtp",))
+    from spaceplane.aero.flow_case import run_flow
+    from spaceplane.flow.settings import FlowSettings
+    from spaceplane.mesh.settings import MeshSettings
+    from spaceplane.vehicle.properties import ReferenceLengths
+    from spaceplane.vehicle.stl import read_stl
+
+    mesh = options.mesh_settings(cell, cells, replace(MeshSettings(), target_cells=200_000))
+    settings = replace(FlowSettings(), precision=solver_precision)
+    reference = ReferenceLengths(**lengths, moment_center=center)
+    surface = read_stl(body)
+    with progress_bar() as tell:
+        case = run_flow(surface, machs, alphas, betas, reference, mesh, settings, tell)
+    _write(case, surface, vtu, vtp)
+    write_json(case.records, json_file)
+    for warning in case.mesh.record.get("warnings") or ():
+        typer.echo(f"warning: {warning}", err=True)
+    if str(json_file) != "-":
+        from spaceplane.report.summary import print_flow
+
+        print_flow(case.records)
+    bad = [r for r in case.records if not r["converged"]]
+    for r in bad:
+        where = f"Mach {r['mach']:g}, alpha {r['alpha_deg']:g} deg, beta {r['beta_deg']:g} deg"
+        typer.echo(f"not good: {where}: {r['verdict']}: {r['reason']}", err=True)
+    return 1 if bad else 0
+
+
+def _write(case: FlowCase, surface, vtu: Path | None, vtp: Path | None) -> None:
+    from spaceplane.flow import export
+
+    if vtu is not None:
+        with renamed_when_done(vtu) as partial:
+            export.write_vtu(case.solution, partial)
+    if vtp is not None:
+        with renamed_when_done(vtp) as partial:
+            export.write_vtp(surface, case.solution, partial)

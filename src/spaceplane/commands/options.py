@@ -1,0 +1,98 @@
+"""Options that several commands share, and the settings they become."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from spaceplane.commands.arguments import assignments, positive
+from spaceplane.errors import InputError
+
+if TYPE_CHECKING:
+    from spaceplane.mesh.settings import MeshSettings
+    from spaceplane.vehicle.controls import ControlDeflections
+    from spaceplane.vehicle.presets import Vehicle
+
+VehicleName = Annotated[
+    str, typer.Argument(metavar="VEHICLE", help="Name of a preset (horus-2b) or a vehicle's YAML file.")
+]
+Changes = Annotated[
+    list[str] | None, typer.Option("--set", metavar="NAME=VALUE...", help="Change shape parameters (m, deg).")
+]
+Deflections = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--deflect",
+        metavar="NAME=DEG...",
+        help="Deflect control surfaces, degrees: elevon_left, elevon_right and body_flap positive trailing edge down, "
+        "rudder_left and rudder_right positive outboard.",
+    ),
+]
+AllowOutside = Annotated[bool, typer.Option("--allow-outside-limits", help="Accept values outside their limits.")]
+Cell = Annotated[str | None, typer.Option("--cell", metavar="METRES", help="Edge of the cells at the wall.")]
+Cells = Annotated[
+    str | None, typer.Option("--cells", metavar="N", help="About how many cells the mesh has, instead of --cell.")
+]
+Precision = Annotated[
+    str, typer.Option("--precision", metavar="fp32|fp64", help="Floating-point precision of the flow solver.")
+]
+JsonFile = Annotated[
+    Path | None, typer.Option("--json", metavar="FILE", help="Write the result as JSON; - for standard output.")
+]
+
+PRECISIONS = {"fp32": "single", "single": "single", "fp64": "double", "double": "double"}
+
+
+def load_vehicle(vehicle: str, changes: list[str] | None, allow_outside_limits: bool) -> Vehicle:
+    """The vehicle with its changed shape parameters.
+
+    Raises:
+        InputError: unknown vehicle or parameter, or a value out of limits.
+    """
+    overrides = assignments("--set", changes)
+    from spaceplane.vehicle import presets
+
+    return presets.load(vehicle, overrides, allow_outside_limits)
+
+
+def load_deflections(
+    texts: list[str] | None, allow_outside_limits: bool, base: dict[str, float] | None = None
+) -> ControlDeflections:
+    """Deflections from `name=degrees` texts on top of `base` (degrees).
+
+    Raises:
+        InputError: unknown surface, not a number, or out of limits.
+    """
+    given = assignments("--deflect", texts)
+    from spaceplane.vehicle.controls import ControlDeflections
+
+    return ControlDeflections.from_degrees((base or {}) | given, allow_outside_limits)
+
+
+def mesh_settings(cell: str | None, cells: str | None, default: MeshSettings) -> MeshSettings:
+    """Mesh settings with the wall cell or the number of cells asked for.
+
+    Raises:
+        InputError: both are given, or one has a value that is not allowed.
+    """
+    if cell is not None and cells is not None:
+        raise InputError("--cell and --cells: give one of them, not both")
+    if cell is not None:
+        return replace(default, wall_cell=positive("--cell", cell, "m"), target_cells=None)
+    if cells is not None:
+        return replace(default, target_cells=round(positive("--cells", cells, "cells")))
+    return default
+
+
+def precision(text: str) -> str:
+    """The solver's name of a precision.
+
+    Raises:
+        InputError: unknown.
+    """
+    if text not in PRECISIONS:
+        raise InputError(f"--precision: {text!r}, allowed are fp32 and fp64")
+    return PRECISIONS[text]

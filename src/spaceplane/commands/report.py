@@ -1,0 +1,32 @@
+"""`spaceplane report`: write the HTML report of an analysis again."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from spaceplane.commands import options
+from spaceplane.commands.arguments import writable_file, writable_folder, write_json
+
+EXAMPLE = "Example: spaceplane report out/horus-2b"
+
+
+def report(
+    folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder that `spaceplane analyse` wrote.")],
+    json_file: options.JsonFile = None,
+) -> int:
+    """Write report.html from the result.json and surface.vtp in a folder."""
+    from spaceplane.report import write_report
+    from spaceplane.report.read import read_result
+    from spaceplane.report.summary import print_summary
+
+    result = read_result(folder)
+    writable_folder(folder, "DIR")
+    writable_file(json_file, "--json")
+    path = write_report(folder)
+    write_json({"report": str(path)}, json_file)
+    if str(json_file) != "-":
+        print_summary(result, path)
+    return 0

@@ -1,0 +1,194 @@
+"""The same findings on a terminal: short tables."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rich import box
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from spaceplane.report.flight_point import LEVEL_CSS, time_text
+from spaceplane.report.names import stability
+from spaceplane.report.numbers import MISSING, duration, fixed, grouped, is_number, measured, number
+from spaceplane.report.plots import eigenvalue_text
+from spaceplane.report.read import level_text
+from spaceplane.report.sections import total_seconds, unconverged, warnings
+
+if TYPE_CHECKING:
+    from spaceplane.validation.records import Record
+
+COLOURS = {"good": "green", "fair": "yellow", "poor": "dark_orange", "bad": "red"}
+COEFFICIENT_ROWS = ("CL", "CD", "L_over_D", "Cm")
+DERIVATIVE_ROWS = ("CL_alpha", "CD_alpha", "Cm_alpha", "CY_beta", "Cl_beta", "Cn_beta", "CL_M", "CD_M", "Cm_M")
+SIGN_COLOURS = {"stable": "green", "unstable": "red", "undecided": "yellow", "": ""}
+
+
+def shortcomings(result: dict) -> list[str]:
+    """What keeps a result from being good, one line each: unconverged conditions, flight points without modes."""
+    found = [
+        f"{name}, condition {record.get('label')}: {record.get('verdict')}" for name, record in unconverged(result)
+    ]
+    found += [f"{p['name']}: no modes" for p in result["flight_points"] if not p.get("modes")]
+    if not result["flight_points"]:
+        found.append("no flight point")
+    return found
+
+
+def print_summary(result: dict, report: Path | None = None, console: Console | None = None) -> None:
+    """Print what an analysis found: coefficients, key derivatives, modes with levels, convergence, time, report."""
+    console = console or _console()
+    points = result["flight_points"]
+    console.print(Text(result["vehicle"]["name"], style="bold"), highlight=False)
+    console.print(_points_table(points))
+    for p in points:
+        if p.get("modes"):
+            console.print(_modes_table(f"modes at {p['name']}", p["modes"]))
+    if any(p.get("verdicts") for p in points):
+        console.print(_levels_table(points))
+    for line in warnings(result):
+        console.print(Text(f"warning: {line}", style="yellow"), highlight=False, soft_wrap=True)
+    console.print(_convergence_line(result), highlight=False)
+    if report is not None:
+        console.print(f"report: {report}", highlight=False, soft_wrap=True)
+
+
+def _console() -> Console:
+    """A terminal of its own width; a file or pipe gets room enough for every column."""
+    console = Console()
+    return console if console.is_terminal else Console(width=120)
+
+
+def _convergence_line(result: dict) -> Text:
+    records = [r for p in result["flight_points"] for r in p.get("convergence") or []]
+    bad = len(unconverged(result))
+    if bad:
+        line = Text(f"{bad} of {len(records)} flow conditions NOT converged", style="red")
+    else:
+        line = Text(f"all {len(records)} flow conditions converged", style="green")
+    cells = grouped((result.get("mesh") or {}).get("cells"))
+    return line.append(f" on {cells} cells in {duration(total_seconds(result))}", style="default")
+
+
+def _points_table(points: list[dict]) -> Table:
+    table = _table("")
+    for p in points:
+        table.add_column(p["name"], justify="right", no_wrap=True)
+    table.add_row("altitude, km", *(fixed(_scaled(p.get("altitude_m"), 1e-3), 1) for p in points))
+    table.add_row("alpha, deg", *(fixed(p.get("alpha_deg"), 1) for p in points))
+    for name in COEFFICIENT_ROWS:
+        values = [(p.get("coefficients") or {}).get(name) for p in points]
+        table.add_row("L/D" if name == "L_over_D" else name, *(fixed(v, 4) for v in values))
+    table.add_section()
+    table.add_row(Text("per rad, per Mach", style="dim"))
+    for name in DERIVATIVE_ROWS:
+        records = [(p.get("derivatives") or {}).get(name) or {} for p in points]
+        if any(records):
+            table.add_row(name, *(_derivative_cell(name, r) for r in records))
+    return table
+
+
+def _derivative_cell(name: str, record: dict) -> Text:
+    value, error = record.get("value"), record.get("error")
+    return Text(str(measured(value, error)), style=SIGN_COLOURS[stability(name, value, error)])
+
+
+def _modes_table(title: str, modes: list[dict]) -> Table:
+    table = _table(title)
+    for heading in ("eigenvalue, 1/s", "half or double time", "period", "damping"):
+        table.add_column(heading, justify="right", no_wrap=True)
+    for mode in modes:
+        grows = mode["eigenvalue"][0] > 0
+        table.add_row(
+            Text(mode["name"], style="red" if grows else ""),
+            eigenvalue_text(mode["eigenvalue"]),
+            time_text(mode),
+            duration(mode.get("period_s")),
+            number(mode.get("damping_ratio"), 3),
+        )
+    return table
+
+
+def _levels_table(points: list[dict]) -> Table:
+    """MIL-F-8785C levels: a row for each mode and criterion, a column for each flight point."""
+    table = _table("MIL-F-8785C")
+    for p in points:
+        table.add_column(p["name"], justify="right", no_wrap=True)
+    rows: dict[tuple, list[Text]] = {}
+    for index, p in enumerate(points):
+        for v in p.get("verdicts") or []:
+            key = (v["mode"], v.get("criterion") or "", v.get("paragraph") or "")
+            cells = rows.setdefault(key, [Text(MISSING, style="dim") for _ in points])
+            cells[index] = _level_cell(v)
+    for (mode, criterion, paragraph), cells in rows.items():
+        table.add_row(Text(f"{mode}: {criterion} ({paragraph})", overflow="fold"), *cells)
+    return table
+
+
+def _level_cell(v: dict) -> Text:
+    level = v.get("level") if v.get("applicable", True) else None
+    value = f" ({number(v['value'], 3)})" if is_number(v.get("value")) else ""
+    return Text(
+        ("n/a" if level is None else level_text(level)) + value, style=COLOURS.get(LEVEL_CSS.get(level, ""), "dim")
+    )
+
+
+def print_modes(record: dict, console: Console | None = None) -> None:
+    """Print the modes and levels of a `spaceplane modes` record."""
+    console = console or _console()
+    console.print(_modes_table("mode", record["modes"]))
+    if record.get("verdicts"):
+        console.print(_levels_table([{"name": "verdict", "verdicts": record["verdicts"]}]))
+
+
+def print_flow(records: Iterable[dict], console: Console | None = None) -> None:
+    """Print the coefficients of each condition of a `spaceplane flow` run."""
+    console = console or _console()
+    table = Table(box=box.SIMPLE_HEAD, header_style="bold")
+    names = ("CL", "CD", "CY", "Cl", "Cm", "Cn", "CA", "CN")
+    for title in ("Mach", "alpha", "beta", *names, "verdict"):
+        table.add_column(title, justify="right", no_wrap=True)
+    for r in records:
+        style = "green" if r["converged"] else "red"
+        values = [fixed(r.get(name), 5) for name in names]
+        where = [number(r["mach"], 3), fixed(r["alpha_deg"], 2), fixed(r["beta_deg"], 2)]
+        table.add_row(*where, *values, Text(r.get("verdict") or "", style=style))
+    console.print(table)
+
+
+def print_validation(records: Iterable[Record], console: Console | None = None) -> None:
+    """Print published values beside ours."""
+    console = console or _console()
+    table = _table("case")
+    for title in ("quantity", "condition", "published", "ours", "deviation", "verdict"):
+        table.add_column(title, justify="left" if title in ("quantity", "condition") else "right")
+    for r in records:
+        deviation = r.deviation
+        if deviation is None:
+            shown = MISSING
+        else:
+            shown = f"{100 * deviation:+.1f} %" if r.kind == "relative" else f"{deviation:+.4g}"
+        style = {"pass": "green", "fail": "red", "outside": "yellow"}.get(r.verdict, "")
+        table.add_row(
+            r.case,
+            r.quantity,
+            r.condition,
+            number(r.published, 4),
+            number(r.computed, 4),
+            shown,
+            Text(r.verdict, style=style),
+        )
+    console.print(table)
+
+
+def _table(first: str) -> Table:
+    table = Table(box=box.SIMPLE_HEAD, header_style="bold", pad_edge=False)
+    table.add_column(first, no_wrap=False)
+    return table
+
+
+def _scaled(value: float | None, factor: float) -> float | None:
+    return value * factor if is_number(value) else None

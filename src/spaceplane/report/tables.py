@@ -1,0 +1,158 @@
+"""An analysis as flat tables: CSV files, or the aerodynamic tables of one NetCDF file."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Callable, Iterable
+from pathlib import Path
+
+import numpy as np
+
+CONDITION_KEYS = (
+    "mach",
+    "altitude_m",
+    "alpha_deg",
+    "beta_deg",
+    "gamma_deg",
+    "bank_deg",
+    "velocity_ms",
+    "dynamic_pressure_Pa",
+)
+
+
+def coefficient_rows(result: dict) -> list[dict]:
+    """A row for each flight point and part ("total" included), coefficients in columns."""
+    rows = []
+    for p in result["flight_points"]:
+        conditions = {"flight_point": p["name"], **{k: p.get(k) for k in CONDITION_KEYS}}
+        rows.append(conditions | {"part": "total"} | (p.get("coefficients") or {}))
+        rows += [conditions | {"part": part} | values for part, values in (p.get("coefficients_by_part") or {}).items()]
+    return rows
+
+
+def derivative_rows(result: dict) -> list[dict]:
+    """A row for each flight point, derivative and part ("total" included)."""
+    rows = []
+    for p in result["flight_points"]:
+        for name, record in (p.get("derivatives") or {}).items():
+            common = {"flight_point": p["name"], "mach": p.get("mach"), "derivative": name}
+            tail = {"unit": record.get("unit"), "step": record.get("step"), "step_unit": record.get("step_unit")}
+            rows.append(common | {"part": "total", "value": record.get("value"), "error": record.get("error")} | tail)
+            for part, value in (record.get("by_part") or {}).items():
+                rows.append(common | {"part": part, "value": value, "error": None} | tail)
+    return rows
+
+
+def mode_rows(result: dict) -> list[dict]:
+    """A row for each flight point and mode."""
+    keys = ("period_s", "half_time_s", "double_time_s", "damping_ratio", "natural_frequency_rads", "oscillatory")
+    return [
+        {
+            "flight_point": p["name"],
+            "mode": m["name"],
+            "real_1s": m["eigenvalue"][0],
+            "imaginary_rads": m["eigenvalue"][1],
+        }
+        | {k: m.get(k) for k in keys}
+        for p in result["flight_points"]
+        for m in p.get("modes") or []
+    ]
+
+
+def verdict_rows(result: dict) -> list[dict]:
+    """A row for each flight point and flying-quality verdict."""
+    keys = (
+        "mode",
+        "criterion",
+        "paragraph",
+        "vehicle_class",
+        "category",
+        "value",
+        "unit",
+        "level",
+        "margin",
+        "applicable",
+        "note",
+    )
+    return [
+        {"flight_point": p["name"]} | {k: v.get(k) for k in keys}
+        for p in result["flight_points"]
+        for v in p.get("verdicts") or []
+    ]
+
+
+TABLES: dict[str, Callable[[dict], list[dict]]] = {
+    "coefficients": coefficient_rows,
+    "derivatives": derivative_rows,
+    "modes": mode_rows,
+    "verdicts": verdict_rows,
+}
+
+
+def write_csv(result: dict, folder: Path) -> list[Path]:
+    """Write coefficients.csv, derivatives.csv, modes.csv and verdicts.csv; return their paths.
+
+    Raises:
+        OSError: the folder cannot be written.
+    """
+    paths = []
+    for name, rows in TABLES.items():
+        path = folder / f"{name}.csv"
+        found = rows(result)
+        partial = path.with_suffix(".csv.partial")
+        with partial.open("w", newline="", encoding="utf-8") as file:
+            writer = csv.DictWriter(file, _columns(found), restval="")
+            writer.writeheader()
+            writer.writerows({k: "" if v is None else v for k, v in row.items()} for row in found)
+        partial.replace(path)
+        paths.append(path)
+    return paths
+
+
+def write_netcdf(result: dict, folder: Path) -> list[Path]:
+    """Write tables.nc: coefficients and derivatives over flight point and part, errors beside; return its path.
+
+    Raises:
+        OSError: the folder cannot be written.
+    """
+    import xarray as xr
+
+    points = [p["name"] for p in result["flight_points"]]
+    parts = ["total", *dict.fromkeys(k for p in result["flight_points"] for k in p.get("coefficients_by_part") or {})]
+    variables: dict[str, tuple] = {}
+
+    def fill(rows: Iterable[dict], name_of: Callable[[dict], Iterable[tuple[str, float | None, str]]]) -> None:
+        for row in rows:
+            for name, value, unit in name_of(row):
+                empty = np.full((len(points), len(parts)), np.nan)
+                data = variables.setdefault(name, (("flight_point", "part"), empty, {"units": unit}))[1]
+                if row["part"] in parts and value is not None:
+                    data[points.index(row["flight_point"]), parts.index(row["part"])] = value
+
+    skip = {"flight_point", "part", *CONDITION_KEYS}
+    fill(coefficient_rows(result), lambda row: [(k, v, "1") for k, v in row.items() if k not in skip])
+    fill(
+        derivative_rows(result),
+        lambda row: [
+            (row["derivative"], row["value"], row["unit"] or "1"),
+            *([(f"{row['derivative']}_error", row["error"], row["unit"] or "1")] if row["part"] == "total" else []),
+        ],
+    )
+    conditions = {
+        key: (
+            "flight_point",
+            np.array([np.nan if p.get(key) is None else p[key] for p in result["flight_points"]], float),
+        )
+        for key in CONDITION_KEYS
+    }
+    attributes = {"source": f"spaceplane {result.get('version')}", "created": result.get("created") or ""}
+    data = xr.Dataset(variables, {"flight_point": points, "part": parts, **conditions}, attributes)
+    path = folder / "tables.nc"
+    partial = path.with_suffix(".nc.partial")
+    data.to_netcdf(partial)
+    partial.replace(path)
+    return [path]
+
+
+def _columns(rows: list[dict]) -> list[str]:
+    return list(dict.fromkeys(key for row in rows for key in row))
