@@ -1,0 +1,165 @@
+"""Eigenmodes of a linear system: how they move, how fast, and what they are called.
+
+Participation factors (Perez-Arriaga, Verghese and Schweppe 1982) say what moves: the product of the components of the
+left and right eigenvectors at a state, which does not depend on the units of the states, unlike the eigenvector.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import eig
+from scipy.optimize import linear_sum_assignment
+
+from spaceplane.dynamics.mode_names import PITCH_APERIODIC, Naming, name_mode, without_pitch_stiffness
+from spaceplane.dynamics.statespace import StateSpace
+
+# An imaginary part below this fraction of the modulus is round-off of a double real eigenvalue.
+_REAL_TOLERANCE = 1e-8
+# An eigenvalue below this fraction of the largest is zero: beyond what double precision can tell.
+_NEUTRAL_TOLERANCE = 1e-11
+
+
+@dataclass(frozen=True)
+class Mode:
+    """One real eigenvalue or one conjugate pair.
+
+    Attributes:
+        name: what it is, by what takes part in it; textbook names only where they hold.
+        kind: key of the name, see `spaceplane.dynamics.mode_names.KINDS`.
+        eigenvalue: 1/s, the one with the positive imaginary part of a pair.
+        oscillatory: whether it is a pair.
+        period: s; None if aperiodic.
+        half_time: s in which the amplitude halves; None if it does not decay.
+        double_time: s in which the amplitude doubles; None if it does not grow.
+        damping_ratio: -Re / |eigenvalue|; None if aperiodic.
+        natural_frequency: |eigenvalue|, rad/s.
+        eigenvector: [state] SI units and rad, Euclidean norm 1, largest component real and positive.
+        participation: [state] shares, adding to 1.
+        states: names of the components.
+        group: "longitudinal", "lateral" or "coupled".
+        explanation: one sentence on why it has its name.
+    """
+
+    name: str
+    kind: str
+    eigenvalue: complex
+    oscillatory: bool
+    period: float | None
+    half_time: float | None
+    double_time: float | None
+    damping_ratio: float | None
+    natural_frequency: float
+    eigenvector: np.ndarray
+    participation: np.ndarray
+    states: tuple[str, ...]
+    group: str
+    explanation: str
+
+    @property
+    def stable(self) -> bool:
+        """Whether its amplitude decays."""
+        return self.half_time is not None
+
+    def share(self, *states: str) -> float:
+        """Participation of some states together; states that the system lacks count nothing."""
+        return float(sum(self.participation[self.states.index(s)] for s in states if s in self.states))
+
+
+def identify(system: StateSpace) -> tuple[Mode, ...]:
+    """Eigenmodes of any system with named states, fastest first.
+
+    Names are given by participation; the states that count are V, u, w, gamma, theta, R, h, q, alpha (longitudinal)
+    and p, r, beta, v, sigma, phi, psi, chi (lateral).
+    """
+    values, left, right = eig(system.A, left=True, right=True)
+    largest = float(np.abs(values).max(initial=0.0))
+    found = []
+    for k in np.argsort(-np.abs(values), kind="stable"):
+        value = complex(values[k])
+        if abs(value.imag) <= _REAL_TOLERANCE * abs(value):
+            value = complex(value.real, 0.0)
+        if abs(value) <= _NEUTRAL_TOLERANCE * largest:
+            value = 0j
+        if value.imag < 0:
+            continue
+        share = np.abs(left[:, k].conj() * right[:, k])
+        share = share / share.sum()
+        found.append((value, right[:, k], share, name_mode(value, dict(zip(system.states, share, strict=True)))))
+    if any(value.real > 0 and naming.kind in PITCH_APERIODIC for value, _, _, naming in found):
+        found = [(value, vector, share, without_pitch_stiffness(naming)) for value, vector, share, naming in found]
+    return tuple(_mode(value, vector, share, naming, system.states) for value, vector, share, naming in found)
+
+
+def _mode(value: complex, right: np.ndarray, share: np.ndarray, naming: Naming, states: tuple[str, ...]) -> Mode:
+    vector = right / np.linalg.norm(right)
+    vector = vector * np.exp(-1j * np.angle(vector[np.argmax(np.abs(vector))]))
+    growth, oscillatory = value.real, value.imag > 0
+    return Mode(
+        name=naming.name,
+        kind=naming.kind,
+        eigenvalue=value,
+        oscillatory=oscillatory,
+        period=2 * math.pi / value.imag if oscillatory else None,
+        half_time=math.log(2) / -growth if growth < 0 else None,
+        double_time=math.log(2) / growth if growth > 0 else None,
+        damping_ratio=-growth / abs(value) if oscillatory else None,
+        natural_frequency=abs(value),
+        eigenvector=vector,
+        participation=share,
+        states=states,
+        group=naming.group,
+        explanation=naming.explanation,
+    )
+
+
+def follow(reference: tuple[Mode, ...], other: tuple[Mode, ...]) -> tuple[Mode | None, ...]:
+    """The mode of `other` that continues each mode of `reference`, or None.
+
+    Pairs are chosen together so that the sum of differences is least: half the difference of participations plus the
+    distance of the eigenvalues relative to their size. A pair that differs in all its participation is no pair.
+
+    Args:
+        reference: modes at one flight point or of one shape.
+        other: modes at a neighbouring one, with the same states.
+
+    Returns:
+        [reference mode] of modes of `other`, each at most once.
+    """
+    cost = np.zeros((len(reference), len(other)))
+    for i, a in enumerate(reference):
+        for j, b in enumerate(other):
+            size = abs(a.eigenvalue) + abs(b.eigenvalue)
+            distance = abs(a.eigenvalue - b.eigenvalue) / size if size > 0 else 0.0
+            cost[i, j] = 0.5 * float(np.abs(a.participation - b.participation).sum()) + distance
+    rows, columns = linear_sum_assignment(cost)
+    matched: list[Mode | None] = [None] * len(reference)
+    for i, j in zip(rows, columns, strict=True):
+        if cost[i, j] < 1.0:
+            matched[i] = other[j]
+    return tuple(matched)
+
+
+def to_record(mode: Mode) -> dict:
+    """The mode as plain JSON types; missing numbers are None, phases in degrees relative to the largest component."""
+    return {
+        "name": mode.name,
+        "kind": mode.kind,
+        "group": mode.group,
+        "eigenvalue": [mode.eigenvalue.real, mode.eigenvalue.imag],
+        "oscillatory": mode.oscillatory,
+        "stable": mode.stable,
+        "period_s": mode.period,
+        "half_time_s": mode.half_time,
+        "double_time_s": mode.double_time,
+        "damping_ratio": mode.damping_ratio,
+        "natural_frequency_rads": mode.natural_frequency,
+        "eigenvector": {
+            state: {"magnitude": float(abs(z)), "phase_deg": float(np.degrees(np.angle(z)))}
+            for state, z in zip(mode.states, mode.eigenvector, strict=True)
+        },
+        "participation": {state: float(x) for state, x in zip(mode.states, mode.participation, strict=True)},
+        "explanation": mode.explanation,
+    }

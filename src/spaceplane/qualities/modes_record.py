@@ -1,0 +1,99 @@
+"""The record of `spaceplane modes`: eigenvalues, modes and verdicts of a derivatives file, as plain JSON types.
+
+Schema `spaceplane.modes`, version 1: `flight` and `vehicle` (resolved values, unit in the name), `derivatives` (per rad
+and per unit Mach), `form`, `states`, `inputs`, `A`, `B`, `equilibrium` (rad/s), `eigenvalues` (every one, [re, im] in
+1/s), `modes` (one for each real eigenvalue or conjugate pair, with its eigenvector; see
+`spaceplane.dynamics.modes.to_record`), `n_alpha_g_per_rad`, `verdicts` (see `spaceplane.qualities.assess.Verdict`).
+Missing numbers are null.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import fields
+
+import numpy as np
+
+from spaceplane import __version__
+from spaceplane.dynamics.derivatives import Derivatives
+from spaceplane.dynamics.derivatives_file import ModesCase
+from spaceplane.dynamics.flightpoint import equilibrium_rates
+from spaceplane.dynamics.linearise import linearise
+from spaceplane.dynamics.modes import identify
+from spaceplane.dynamics.modes import to_record as mode_record
+from spaceplane.environment.constants import STANDARD_GRAVITY
+from spaceplane.qualities.assess import assess, load_factor_slope
+from spaceplane.qualities.assess import to_record as verdict_record
+
+
+def analyse_modes(case: ModesCase) -> dict:
+    """Everything `spaceplane modes` reports about a case.
+
+    Raises:
+        InputError: unknown class or category, or a flight point that the model cannot hold.
+    """
+    system = linearise(
+        case.point, case.mass, case.reference, case.derivatives, case.form, case.density_gradient, case.gyroscopic
+    )
+    modes = identify(system)
+    weight = case.mass.mass * STANDARD_GRAVITY
+    n_alpha = load_factor_slope(case.derivatives.CL_alpha, case.point.dynamic_pressure, case.reference.area, weight)
+    verdicts = assess(modes, case.vehicle_class, case.category, n_alpha)
+    rates = equilibrium_rates(case.point, case.mass.mass, case.reference.area)
+    eigenvalues = sorted(np.linalg.eigvals(system.A), key=lambda z: (-round(abs(z), 12), -z.imag))
+    return {
+        "schema": "spaceplane.modes",
+        "schema_version": 1,
+        "version": __version__,
+        "flight": _flight(case),
+        "vehicle": {
+            "mass_kg": case.mass.mass,
+            "Ixx_kgm2": case.mass.Ixx,
+            "Iyy_kgm2": case.mass.Iyy,
+            "Izz_kgm2": case.mass.Izz,
+            "area_m2": case.reference.area,
+            "c_ref_m": case.reference.chord,
+            "b_ref_m": case.reference.span,
+        },
+        "derivatives": {"unit": "per_radian", **_derivatives(case.derivatives)},
+        "form": system.form,
+        "density_gradient": case.density_gradient and case.form == "rigid-body",
+        "gyroscopic": case.gyroscopic and case.form == "rigid-body",
+        "vehicle_class": case.vehicle_class,
+        "category": case.category,
+        "equilibrium": {"p_rads": rates.p, "q_rads": rates.q, "r_rads": rates.r},
+        "states": list(system.states),
+        "inputs": list(system.inputs),
+        "A": system.A.tolist(),
+        "B": system.B.tolist(),
+        "eigenvalues": [[float(z.real), float(z.imag)] for z in eigenvalues],
+        "modes": [mode_record(mode) for mode in modes],
+        "n_alpha_g_per_rad": n_alpha,
+        "verdicts": [verdict_record(verdict) for verdict in verdicts],
+    }
+
+
+def _flight(case: ModesCase) -> dict:
+    point = case.point
+    return {
+        "name": point.name,
+        "mach": point.mach,
+        "altitude_m": point.altitude,
+        "alpha_deg": math.degrees(point.alpha),
+        "beta_deg": math.degrees(point.beta),
+        "gamma_deg": math.degrees(point.gamma),
+        "bank_deg": math.degrees(point.bank),
+        "CL": point.CL,
+        "CD": point.CD,
+        "velocity_ms": point.velocity,
+        "dynamic_pressure_Pa": point.dynamic_pressure,
+        "pressure_Pa": point.ambient.pressure,
+        "temperature_K": point.ambient.temperature,
+        "density_kgm3": point.ambient.density,
+        "air": point.ambient.source,
+    }
+
+
+def _derivatives(derivatives: Derivatives) -> dict:
+    plain = {f.name: getattr(derivatives, f.name) for f in fields(derivatives) if f.name != "controls"}
+    return {**plain, **derivatives.controls}
