@@ -57,7 +57,8 @@ def _point(mach: float, shape: dict, verdict: str) -> dict:
         "verdicts": [
             {
                 "mode": "Dutch roll",
-                "criterion": "damping ratio",
+                "criterion": "lateral-directional oscillation (Dutch roll)",
+                "quantity": "damping ratio",
                 "paragraph": "3.3.1.1",
                 "level": 3,
                 "value": 0.01,
@@ -90,9 +91,10 @@ def mode(name: str, eigenvalue: complex, vector: dict[str, float]) -> dict:
         "eigenvalue": [eigenvalue.real, eigenvalue.imag],
         "oscillatory": eigenvalue.imag != 0,
         "damping_ratio": -eigenvalue.real / size if eigenvalue.imag else None,
-        "natural_frequency_rads": size if eigenvalue.imag else None,
-        "half_time_s": None,
-        "double_time_s": None,
+        "natural_frequency_rads": size,
+        "period_s": 2 * math.pi / eigenvalue.imag if eigenvalue.imag else None,
+        "half_time_s": math.log(2) / -eigenvalue.real if eigenvalue.real < 0 else None,
+        "double_time_s": math.log(2) / eigenvalue.real if eigenvalue.real > 0 else None,
         "eigenvector": {
             state: {"magnitude": abs(value), "phase_deg": 0.0 if value >= 0 else 180.0}
             for state, value in vector.items()

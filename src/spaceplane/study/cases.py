@@ -30,15 +30,6 @@ BASE_PARAMETERS = (
 )
 """Numbers 1 to 15 of the thesis's Table 5.1: the shape without the sizes of the control surfaces."""
 
-OPTIMISED_SHAPE = {
-    "winglet_length_m": 4.0,
-    "fuselage_height_m": 1.0,
-    "fuselage_width_m": 3.0,
-    "wing_width_m": 3.9,
-    "winglet_top_length_m": 3.0,
-}
-"""The thesis's optimised shape (its section 7.4): what differs from the default."""
-
 
 class SensitivityStudy(BaseModel):
     """A one-at-a-time study: the default shape, and each parameter at other values with the rest at the default.

@@ -32,7 +32,7 @@ class Change:
         parameter_default: m or deg.
         mach: flight point.
         kind: "coefficient", "derivative", "mode" or "level".
-        quantity: name; modes as "Dutch roll: damping ratio", levels as "Dutch roll: criterion".
+        quantity: name; modes as "Dutch roll: damping ratio", levels as "criterion: quantity".
         unit: of value, default and change.
         value: of the changed shape; None where it does not exist.
         default: of the default shape; None where it does not exist.
@@ -174,11 +174,18 @@ def _mode_quantities(point: dict, reference: dict) -> Iterator[tuple]:
 
 
 def _level_quantities(point: dict, reference: dict) -> Iterator[tuple]:
-    mine = {(verdict["mode"], verdict["criterion"]): verdict for verdict in point["verdicts"]}
-    base = {(verdict["mode"], verdict["criterion"]): verdict for verdict in reference["verdicts"]}
-    for key in dict.fromkeys([*base, *mine]):
-        levels = [level_number(side[key]["level"]) if key in side else None for side in (mine, base)]
-        yield "level", f"{key[0]}: {key[1]}", "level", *levels, None
+    mine, base = _worst_levels(point["verdicts"]), _worst_levels(reference["verdicts"])
+    for name in dict.fromkeys([*base, *mine]):
+        yield "level", name, "level", mine.get(name), base.get(name), None
+
+
+def _worst_levels(verdicts: list[dict]) -> dict[str, int | None]:
+    """Level by criterion and quantity; of several modes under one, the worst."""
+    worst: dict[str, int | None] = {}
+    for verdict in verdicts:
+        name, level = f"{verdict['criterion']}: {verdict['quantity']}", level_number(verdict["level"])
+        worst[name] = max((known for known in (level, worst.get(name)) if known is not None), default=None)
+    return worst
 
 
 def _lateral_share(mode: dict) -> float:

@@ -8,6 +8,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from spaceplane.qualities import limits
 from spaceplane.study.changes import Change, lateral_oscillation, mode_figure, most_unstable
 from spaceplane.study.thesis import DERIVATIVES
 
@@ -54,6 +55,7 @@ PARTS = (
 )
 """The parameters by figure, as the thesis groups them; others follow in figures of five."""
 
+_CLASS_AND_CATEGORY = (("vehicle_class", "III"), ("category", "B"))
 _GREATEST_PERCENT = 150.0  # taller bars are cut there and labelled with their value
 
 
@@ -80,8 +82,9 @@ def _figures(found: SensitivityResult):
         mach = point["mach"]
         for number, parameters in enumerate(_parts(found), start=1):
             yield f"derivatives_mach_{mach:g}_part_{number}", derivative_bars(found.rows, mach, parameters)
-        yield f"greatest_real_part_mach_{mach:g}", greatest_real_part(found, mach)
-        yield f"lateral_oscillation_mach_{mach:g}", lateral_levels(found, mach)
+        if point["modes"]:  # none where a flow of the default shape failed
+            yield f"greatest_real_part_mach_{mach:g}", greatest_real_part(found, mach)
+            yield f"lateral_oscillation_mach_{mach:g}", lateral_levels(found, mach)
 
 
 def derivative_bars(rows: tuple[Change, ...], mach: float, parameters: tuple[str, ...]) -> Figure:
@@ -193,23 +196,27 @@ def lateral_levels(found: SensitivityResult, mach: float) -> Figure:
 
     shapes = _modes_by_shape(found, mach, lateral_oscillation)
     default = lateral_oscillation(_point(found.default, mach)["modes"])
+    vehicle_class, category = (found.default["settings"].get(key, default) for key, default in _CLASS_AND_CATEGORY)
+    limits_of = limits.of("dutch_roll", category, vehicle_class)
     figure, axes = plt.subplots(1, 3, figsize=(12.0, 4.6), sharey=True)
     panels = (
-        ("damping ratio ζ", lambda mode: mode_figure(mode, "damping_ratio"), {1: 0.08, 2: 0.02, 3: 0.0}),
-        ("natural frequency ω, rad/s", lambda mode: mode_figure(mode, "natural_frequency"), {1: 0.4}),
-        ("ζω, 1/s", _product, {1: 0.15, 2: 0.05}),
+        ("damping ratio ζ", lambda mode: mode_figure(mode, "damping_ratio"), "zeta"),
+        ("natural frequency ω, rad/s", lambda mode: mode_figure(mode, "natural_frequency"), "omega"),
+        ("ζω, 1/s", _product, "zeta_omega"),
     )
-    for ax, (label, figure_of, limits) in zip(axes, panels, strict=True):
+    for ax, (label, figure_of, limited) in zip(axes, panels, strict=True):
         values = {key: figure_of(mode) for key, mode in shapes.items()}
         _dumbbells(ax, values, figure_of(default) if default else None, label)
-        for level, limit in limits.items():
+        for limit, levels in _by_limit(limits_of[limited]).items():
+            level = levels[0]
             ax.axvline(limit, color=LEVEL_COLOURS[level], lw=1.2, ls="--", zorder=1)
-            text = "levels 1-3" if len(limits) == 1 else f"level {level}"
+            text = f"level {level}" if len(levels) == 1 else f"levels {levels[0]}-{levels[-1]}"
             style = {"color": LEVEL_COLOURS[level], "fontsize": 7.5, "ha": "center", "va": "bottom"}
             ax.text(limit, 1.01, text, transform=ax.get_xaxis_transform(), **style)
     _side_legend(figure)
     figure.suptitle(
-        f"Lateral oscillation and MIL-F-8785C (class III, category B: lower limits), Mach {mach:g}",
+        f"Lateral oscillation, Mach {mach:g}; dashed: least values of MIL-F-8785C, class {vehicle_class}, category "
+        f"{category}",
         x=0.01,
         ha="left",
         fontsize=12,
@@ -260,6 +267,14 @@ def _modes_by_shape(found: SensitivityResult, mach: float, choose) -> dict[tuple
 def _product(mode: dict) -> float | None:
     ratio, frequency = mode_figure(mode, "damping_ratio"), mode_figure(mode, "natural_frequency")
     return None if ratio is None or frequency is None else ratio * frequency
+
+
+def _by_limit(least: list[float]) -> dict[float, list[int]]:
+    """Return the levels that share each least value."""
+    levels: dict[float, list[int]] = {}
+    for level, limit in enumerate(least, start=1):
+        levels.setdefault(limit, []).append(level)
+    return levels
 
 
 def _dumbbells(ax: Axes, values: dict[tuple[str, str], float | None], default: float | None, label: str) -> None:

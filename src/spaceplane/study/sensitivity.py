@@ -56,7 +56,7 @@ class SensitivityResult:
         rows: every quantity of every changed shape beside the default's.
         agreement: our changes beside the thesis's, see `thesis.agreement`.
         failures: cases without a result.
-        files: what was written, by what it holds.
+        files: what was written, by name of the file (plots: the PNG, by name without its ending).
         computed, reused: cases computed now, and found in the store.
         seconds: wall-clock time, s.
     """
@@ -174,15 +174,11 @@ def as_sensitivities(rows: tuple[Change, ...]) -> list[thesis.Sensitivity]:
 
 
 def write_tables(found: SensitivityResult, out_dir: Path) -> dict[str, Path]:
-    """Write sensitivity.csv (tidy), agreement.csv and sensitivity.json; return their paths by what they hold."""
-    files = {
-        "changes": out_dir / "sensitivity.csv",
-        "agreement": out_dir / "agreement.csv",
-        "json": out_dir / "sensitivity.json",
-    }
-    _write_csv(files["changes"], [row.as_row() for row in found.rows])
-    _write_csv(files["agreement"], list(found.agreement))
-    files["json"].write_text(json.dumps(_document(found), indent=1, allow_nan=False), encoding="utf-8")
+    """Write sensitivity.csv (tidy), agreement.csv and sensitivity.json; return their paths by name."""
+    files = {name: out_dir / name for name in ("sensitivity.csv", "agreement.csv", "sensitivity.json")}
+    _write_csv(files["sensitivity.csv"], [row.as_row() for row in found.rows])
+    _write_csv(files["agreement.csv"], list(found.agreement))
+    files["sensitivity.json"].write_text(json.dumps(_document(found), indent=1, allow_nan=False), encoding="utf-8")
     return files
 
 

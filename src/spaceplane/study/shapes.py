@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
 
+from spaceplane.errors import InputError
 from spaceplane.vehicle.shape import PARAMETERS
+
+_HISTORIES = ("residual_history", "force_history")
 
 
 @dataclass(frozen=True)
@@ -18,21 +21,66 @@ class ParameterRange:
     unit: str
 
 
-def parameter_ranges(vehicle: str, changes: dict[str, float]) -> dict[str, ParameterRange]:
+def parameter_ranges(vehicle: str, changes: Mapping[str, float]) -> dict[str, ParameterRange]:
     """Return the range of every shape parameter, `changes` being part of the default."""
     from spaceplane.vehicle import presets
 
-    shape = presets.load(vehicle, changes, allow_outside=True).shape.as_dict()
+    shape = presets.load(vehicle, dict(changes), allow_outside=True).shape.as_dict()
     return {info.name: ParameterRange(shape[info.name], info.lower, info.upper, info.unit) for info in PARAMETERS}
 
 
 def case_inputs(
-    vehicle: str, changes: dict[str, float], mach: Sequence[float], settings: dict, allow_outside_limits: bool = False
+    vehicle: str,
+    changes: Mapping[str, float],
+    mach: Sequence[float],
+    settings: Mapping,
+    allow_outside_limits: bool = False,
 ) -> dict:
-    """Return everything that determines the analysis of one shape, resolved, as JSON values."""
-    raise NotImplementedError
+    """Return everything that determines the analysis of one shape, resolved, as JSON values.
+
+    Args:
+        vehicle: name of a preset, or a vehicle's YAML file.
+        changes: shape parameters that differ from it, m or deg.
+        mach: flight points.
+        settings: settings of the pipeline, as `AnalyseSettings.from_mapping` takes them; control derivatives are off
+            unless asked for.
+        allow_outside_limits: accept parameters beyond their limits.
+
+    Raises:
+        InputError: an unknown name or a value that is not allowed.
+    """
+    from spaceplane.pipeline import AnalyseSettings
+    from spaceplane.vehicle import presets
+
+    if "mach" in settings:
+        raise InputError("settings: mach is a field of the study itself; take it out of settings")
+    subject = presets.load(vehicle, dict(changes), allow_outside=allow_outside_limits)
+    resolved = AnalyseSettings.from_mapping({"controls": False, **settings, "mach": tuple(mach)})
+    return {"vehicle": asdict(subject), "settings": resolved.as_dict()}
 
 
 def evaluate(inputs: dict) -> dict:
     """Run the pipeline on the inputs of `case_inputs`; return what result.json would hold, histories left out."""
-    raise NotImplementedError
+    from spaceplane.pipeline import AnalyseSettings, analyse
+    from spaceplane.report import record
+    from spaceplane.vehicle.presets import Vehicle
+    from spaceplane.vehicle.properties import MassProperties, ReferenceLengths
+    from spaceplane.vehicle.shape import ShapeParameters
+
+    fields = dict(inputs["vehicle"])
+    fields["shape"] = ShapeParameters(**fields["shape"])
+    fields["mass"] = MassProperties(**fields["mass"])
+    fields["reference"] = ReferenceLengths(**fields["reference"])
+    result = record.result(analyse(Vehicle(**fields), AnalyseSettings.from_mapping(inputs["settings"])))
+    return without_histories(result)
+
+
+def without_histories(result: dict) -> dict:
+    """Return a result without its convergence histories, which would be most of its size."""
+    points = []
+    for point in result["flight_points"]:
+        convergence = [
+            {name: value for name, value in row.items() if name not in _HISTORIES} for row in point["convergence"]
+        ]
+        points.append(point | {"convergence": convergence})
+    return result | {"flight_points": points}
