@@ -247,6 +247,39 @@ def validation_block(case: str) -> Callable[[], str]:
     return block
 
 
+def validation_horus() -> str:
+    """HORUS-2B: one compact table per coefficient and configuration, Mach across and angle of attack down."""
+    from spaceplane.validation import read
+
+    records = read(validation_path("horus"))
+    parts = []
+    for quantity in dict.fromkeys(record.quantity for record in records):
+        own = {record.condition: record for record in records if record.quantity == quantity}
+        inside = sum(record.within for record in own.values())
+        title = quantity.replace("dC", "increment of C").replace("Cm", "C_m").replace("CL", "C_L").replace("CD", "C_D")
+        parts.append(f"**{title}**: {inside} of {len(own)} within 30 %.\n")
+        places = [tuple(part.rpartition(" alpha ")[0::2]) for part in own]
+        machs = dict.fromkeys(mach for mach, _ in places)
+        alphas = dict.fromkeys(alpha for _, alpha in places)
+        rows = [
+            [alpha.removesuffix(" deg"), *(_published_and_computed(own[f"{mach} alpha {alpha}"]) for mach in machs)]
+            for alpha in alphas
+        ]
+        head = ("alpha, deg", *(f"{mach.rstrip(',')}: published / computed (deviation)" for mach in machs))
+        parts.append(table(head, rows, "r" * len(head)) + "\n")
+    return "\n".join(parts)
+
+
+def _published_and_computed(record: Any) -> str:
+    if record.computed is None:
+        return f"{record.published:g} / not converged"
+    deviation = f"{record.computed - record.published:+.4f}"
+    if record.deviation is not None:
+        deviation = f"{100 * record.deviation:+.0f} %"
+    shown = f"{record.published:g} / {record.computed:.4f} ({deviation})"
+    return shown if record.within else f"**{shown}**"
+
+
 BLOCKS: dict[str, Callable[[], str]] = {
     "shape parameters": shape_parameters,
     "controls": controls,
@@ -259,5 +292,6 @@ BLOCKS: dict[str, Callable[[], str]] = {
     "demo levels": demo_levels,
     "validation cones": validation_block("cones"),
     "validation sphere": validation_block("sphere"),
-    "validation horus": validation_block("horus"),
+    "validation hb2": validation_block("hb2"),
+    "validation horus": validation_horus,
 }

@@ -15,6 +15,7 @@ Progress = Callable[[str, float], None]
 CASES: dict[str, str] = {
     "cones": "spaceplane.validation.cones",
     "sphere": "spaceplane.validation.sphere",
+    "hb2": "spaceplane.validation.hb2",
     "horus": "spaceplane.validation.horus",
 }
 """Case name -> module whose `run(fine, progress) -> list[Record]` computes it; imported when the case is run."""
