@@ -1,107 +1,87 @@
-"""Body-fitted meshes for tests: structured blocks of hexahedra made into a Mesh."""
+"""Body-fitted meshes for tests: structured blocks of hexahedra, joined where their points coincide, made into a Mesh."""
 
 from __future__ import annotations
+
+from collections.abc import Callable
 
 import numpy as np
 
 from spaceplane.mesh.mesh import Mesh
 
+# Corners of a hexahedron (i, j, k bits) and its six faces, right-handed outwards.
+CORNERS = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]
+FACES = np.array([[0, 4, 7, 3], [1, 2, 6, 5], [0, 1, 5, 4], [3, 7, 6, 2], [0, 3, 2, 1], [4, 5, 6, 7]])
 
-def _quad(a, b, c, d):
-    """Area vector and centroid of (possibly warped) quadrilaterals a b c d, right-handed."""
+
+def quad(corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Area vectors and centroids of (possibly warped) quadrilaterals [face, 4, xyz]."""
+    a, b, c, d = (corners[:, k] for k in range(4))
     area = 0.5 * np.cross(c - a, d - b)
-    one, two = 0.5 * np.cross(b - a, c - a), 0.5 * np.cross(c - a, d - a)
-    s1, s2 = np.linalg.norm(one, axis=-1, keepdims=True), np.linalg.norm(two, axis=-1, keepdims=True)
-    total = np.where(s1 + s2 > 0, s1 + s2, 1.0)
-    center = np.where(s1 + s2 > 0, ((a + b + c) / 3 * s1 + (a + c + d) / 3 * s2) / total, (a + b + c + d) / 4)
+    one = np.linalg.norm(np.cross(b - a, c - a), axis=1, keepdims=True)
+    two = np.linalg.norm(np.cross(c - a, d - a), axis=1, keepdims=True)
+    total = one + two
+    safe = np.where(total > 0, total, 1.0)
+    center = np.where(total > 0, ((a + b + c) / 3 * one + (a + c + d) / 3 * two) / safe, (a + b + c + d) / 4)
     return area, center
 
 
-def from_grid(points: np.ndarray, kinds: dict[str, str], periodic: str = "", part: str = "body") -> Mesh:
-    """Mesh of the hexahedra between points [i, j, k, xyz] (right-handed).
+def from_blocks(blocks: list[np.ndarray], is_wall: Callable[[np.ndarray], np.ndarray], part: str = "body") -> Mesh:
+    """Mesh of all hexahedra of right-handed blocks of points [i, j, k, xyz].
 
-    Args:
-        kinds: what each side is, "wall" or "far", for the keys i0 i1 j0 j1 k0 k1; sides not named are collapsed or
-            periodic and get no face.
-        periodic: axes ("k") whose last layer of cells touches the first.
+    Faces with the same corner points are joined, faces without area dropped; of those left over, `is_wall` tells from the
+    centres [face, xyz] which are walls; the others are far field.
     """
-    p = points
-    shape = tuple(n - 1 for n in p.shape[:3])
-    number = np.arange(np.prod(shape)).reshape(shape)
-    corner = {
-        "i": (p[:, :-1, :-1], p[:, 1:, :-1], p[:, 1:, 1:], p[:, :-1, 1:]),
-        "j": (p[:-1, :, :-1], p[:-1, :, 1:], p[1:, :, 1:], p[1:, :, :-1]),
-        "k": (p[:-1, :-1], p[1:, :-1], p[1:, 1:], p[:-1, 1:]),
-    }
-    cells, areas, centers = [], [], []
-    edges = {"wall": ([], [], []), "far": ([], [], [])}
-    volume, moment = np.zeros(number.size), np.zeros((number.size, 3))
-    middle = (
-        sum(
-            p[a : p.shape[0] - 1 + a, b : p.shape[1] - 1 + b, c : p.shape[2] - 1 + c]
-            for a in (0, 1)
-            for b in (0, 1)
-            for c in (0, 1)
-        ).reshape(-1, 3)
-        / 8
-    )
-
-    def add(cell, area, center):
-        height = np.einsum("ij,ij->i", center - middle[cell], area) / 3
-        np.add.at(volume, cell, height)
-        np.add.at(moment, cell, height[:, None] * (0.75 * center + 0.25 * middle[cell]))
-
-    for axis, name in enumerate("ijk"):
-        area, center = _quad(*corner[name])
-        take = lambda x, sl, axis=axis: x[tuple(sl if a == axis else slice(None) for a in range(3))].reshape(
-            -1, *x.shape[3:]
+    points = np.concatenate([block.reshape(-1, 3) for block in blocks])
+    scale = np.ptp(points, axis=0).max()
+    _, unique = np.unique(np.round(points / scale * 1e9).astype(np.int64), axis=0, return_inverse=True)
+    unique = unique.reshape(-1)
+    hexes, offset = [], 0
+    for block in blocks:
+        number = offset + np.arange(block[..., 0].size).reshape(block.shape[:3])
+        offset += block[..., 0].size
+        ends = [n - 1 for n in block.shape[:3]]
+        hexes.append(
+            np.stack([number[a : a + ends[0], b : b + ends[1], c : c + ends[2]] for a, b, c in CORNERS], -1).reshape(
+                -1, 8
+            )
         )
-        low, high = take(number, slice(None, -1)), take(number, slice(1, None))
-        inner, mid = take(area, slice(1, -1)), take(center, slice(1, -1))
-        add(low, inner, mid)
-        add(high, -inner, mid)
-        pieces = [(low, high, inner, mid)]
-        first, last = take(number, slice(0, 1)), take(number, slice(-1, None))
-        if name in periodic:
-            s, c = take(area, slice(0, 1)), take(center, slice(0, 1))
-            add(last, s, c)
-            add(first, -s, c)
-            pieces.append((last, first, s, c))
-        for cell, face, sign, side in ((first, slice(0, 1), -1, "0"), (last, slice(-1, None), 1, "1")):
-            if name + side in kinds:
-                s, c = sign * take(area, face), take(center, face)
-                add(cell, s, c)
-                for store, value in zip(edges[kinds[name + side]], (cell, s, c), strict=True):
-                    store.append(value)
-        for a, b, s, c in pieces:
-            cells.append(np.stack([a, b], axis=1))
-            areas.append(s)
-            centers.append(c)
-    join = lambda rows, width: np.concatenate(rows) if rows else np.zeros((0, width) if width else 0)
-    wall, far = edges["wall"], edges["far"]
-    wall_cell = join(wall[0], 0).astype(np.int32)
-    cells = np.concatenate(cells).astype(np.int32)
-    areas = np.concatenate(areas)
-    keep = np.linalg.norm(areas, axis=1) > 1e-12 * np.cbrt(volume.max()) ** 2
+    hexes = np.concatenate(hexes)
+    count = len(hexes)
+    corners = hexes[:, FACES].reshape(-1, 4)
+    owner = np.repeat(np.arange(count), 6)
+    area, center = quad(points[corners])
+    middle = points[hexes].mean(axis=1)
+    height = np.einsum("ij,ij->i", center - middle[owner], area) / 3
+    volume = np.bincount(owner, height, count)
+    part_center = 0.75 * center + 0.25 * middle[owner]
+    moment = np.stack([np.bincount(owner, height * part_center[:, k], count) for k in range(3)], axis=1)
+
+    solid = np.linalg.norm(area, axis=1) > 1e-13 * scale**2
+    corners, owner, area, center = unique[corners[solid]], owner[solid], area[solid], center[solid]
+    _, face, times = np.unique(np.sort(corners, axis=1), axis=0, return_inverse=True, return_counts=True)
+    face = face.reshape(-1)
+    order = np.argsort(face, kind="stable")
+    first = order[np.concatenate([[0], np.cumsum(times)[:-1]])]
+    second = order[np.cumsum(times) - 1]
+    inner, outer = times == 2, times == 1
+    assert (inner | outer).all()
+    edge = first[outer]
+    wall = is_wall(center[edge])
+    w, f = edge[wall], edge[~wall]
     return Mesh(
-        cell_volume=volume,
-        cell_center=moment / volume[:, None],
-        cell_size=np.cbrt(volume),
-        face_cells=cells[keep],
-        face_area=areas[keep],
-        face_center=np.concatenate(centers)[keep],
-        wall_cell=wall_cell,
-        wall_area=join(wall[1], 3),
-        wall_center=join(wall[2], 3),
-        far_cell=join(far[0], 0).astype(np.int32),
-        far_area=join(far[1], 3),
-        far_center=join(far[2], 3),
-        piece_wall=np.arange(len(wall_cell), dtype=np.int32),
-        piece_area=join(wall[1], 3),
-        piece_center=join(wall[2], 3),
-        piece_part=np.zeros(len(wall_cell), dtype=np.int32),
-        part_names=(part,),
-    )
+        cell_volume=volume, cell_center=moment / volume[:, None], cell_size=np.cbrt(volume),
+        face_cells=np.stack([owner[first[inner]], owner[second[inner]]], axis=1).astype(np.int32),
+        face_area=0.5 * (area[first[inner]] - area[second[inner]]), face_center=center[first[inner]],
+        wall_cell=owner[w].astype(np.int32), wall_area=area[w], wall_center=center[w],
+        far_cell=owner[f].astype(np.int32), far_area=area[f], far_center=center[f],
+        piece_wall=np.arange(len(w), dtype=np.int32), piece_area=area[w], piece_center=center[w],
+        piece_part=np.zeros(len(w), dtype=np.int32), part_names=(part,),
+    )  # fmt: skip
+
+
+def nowhere(center: np.ndarray) -> np.ndarray:
+    """No wall at all."""
+    return np.zeros(len(center), dtype=bool)
 
 
 def box(n: int | tuple[int, int, int], perturb: float = 0.0, seed: int = 1) -> Mesh:
@@ -110,18 +90,19 @@ def box(n: int | tuple[int, int, int], perturb: float = 0.0, seed: int = 1) -> M
     grid = np.stack(np.meshgrid(*[np.linspace(0, 1, m + 1) for m in counts], indexing="ij"), axis=-1)
     shift = np.random.default_rng(seed).uniform(-perturb, perturb, grid.shape) / np.array(counts)
     grid[1:-1, 1:-1, 1:-1] += shift[1:-1, 1:-1, 1:-1]
-    return from_grid(grid, dict.fromkeys(("i0", "i1", "j0", "j1", "k0", "k1"), "far"))
+    return from_blocks([grid], nowhere)
 
 
-def sphere(radial: int, around: int, radius: float = 1.0, far: float = 8.0) -> Mesh:
-    """Six cube-sphere patches would meet awkwardly; one polar block about the x axis does, with its two pole lines collapsed."""
-    stretch = np.geomspace(radius, far, radial + 1)
-    polar = np.linspace(0, np.pi, around + 1)
-    turn = np.linspace(0, 2 * np.pi, 2 * around + 1)
-    r, t, f = np.meshgrid(stretch, polar, turn, indexing="ij")
-    grid = np.stack([-r * np.cos(t), r * np.sin(t) * np.cos(f), r * np.sin(t) * np.sin(f)], axis=-1)
-    grid[:, :, -1] = grid[:, :, 0]
-    grid[:, 0, :, 1:] = 0.0
-    grid[:, -1, :, 1:] = 0.0
-    flipped = grid[:, :, ::-1]
-    return from_grid(flipped, {"i0": "wall", "i1": "far"}, periodic="k")
+def sphere(radial: int, side: int, radius: float = 1.0, far: float = 8.0) -> Mesh:
+    """Sphere in a ball: six patches of a projected cube, `side` cells along each cube edge, `radial` layers, no pole."""
+    angle = np.tan(np.linspace(-np.pi / 4, np.pi / 4, side + 1))
+    r = np.geomspace(radius, far, radial + 1)
+    blocks = []
+    for axis in range(3):
+        for sign in (-1.0, 1.0):
+            a, b = np.meshgrid(angle, sign * angle, indexing="ij")
+            direction = np.empty((side + 1, side + 1, 3))
+            direction[..., axis], direction[..., (axis + 1) % 3], direction[..., (axis + 2) % 3] = sign, a, b
+            direction /= np.linalg.norm(direction, axis=-1, keepdims=True)
+            blocks.append(direction[:, :, None, :] * r[None, None, :, None])
+    return from_blocks(blocks, lambda c: np.linalg.norm(c, axis=1) < 0.5 * (r[0] + r[1]))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from spaceplane.flow import implicit
+from spaceplane.flow.acceleration import Anderson, apply_step
 from spaceplane.flow.fluxes import FLUXES
 from spaceplane.flow.freestream import velocity
 from spaceplane.flow.limiters import LIMITERS
@@ -53,6 +54,7 @@ class Ensemble:
         self.low, self.high = (self.dtype(value) for value in FLUXES[settings.flux])
         self.limiter = LIMITERS[settings.limiter]
         self.allocate(np.arange(len(conditions)))
+        self.anderson = Anderson(mesh.cells, self.free, settings.anderson_depth if order == 2 else 0)
 
     def allocate(self, active: np.ndarray) -> None:
         """Make arrays for the conditions `active`, state at the free stream."""
@@ -76,6 +78,7 @@ class Ensemble:
         self.allocate(self.lanes[lanes])
         source = np.concatenate([lanes, np.full(len(self.lanes) - len(lanes), lanes[-1])])
         np.take(state, source, axis=2, out=self.state)
+        self.anderson.keep(source)
 
     def evaluate(self) -> np.ndarray:
         """Compute the residual of the present state; its norm [lane], fp64."""
@@ -95,7 +98,7 @@ class Ensemble:
             self.free,
             self.residual,
             self.gamma,
-            self.dtype(s.low_mach),
+            self.dtype(s.low_mach if self.order == 2 else 1.0),
             self.stiffness(),
             self.order,
         )
@@ -123,10 +126,20 @@ class Ensemble:
         for forward in (True, False):
             implicit.sweep(t, self.state, self.sensor, self.residual, self.inverse, self.change, self.gamma, forward)
 
-    def apply(self, largest: float) -> np.ndarray:
-        """Add `change` to the state, guarded; [lane] share of cells that were scaled back."""
-        limited = np.zeros((len(self.topology.chunk_cells) - 1, self.state.shape[2]), self.dtype)
-        implicit.apply_change(self.topology, self.state, self.change, self.dtype(largest), limited)
+    def apply(self, largest: float, calm: np.ndarray) -> np.ndarray:
+        """Add the accelerated change to the state; [lane] share of cells that were scaled back.
+
+        Args:
+            largest: most that density and pressure of a cell may change, of themselves.
+            calm: [lane] whether the acceleration may be used.
+        """
+        t = self.topology
+        weights = self.anderson.weights(t, self.change, calm)
+        limited = np.zeros((len(t.chunk_cells) - 1, self.state.shape[2]), self.dtype)
+        apply_step(
+            t, self.state, self.change, self.anderson.last_change, self.anderson.last_step, self.anderson.combined, weights,
+            self.anderson.used, self.dtype(largest), limited,
+        )  # fmt: skip
         return limited.sum(axis=0, dtype=np.float64) / self.mesh.cells
 
     def wall_pressure(self) -> np.ndarray:

@@ -1,6 +1,6 @@
 """Block symmetric Gauss-Seidel on the first-order Jacobian, in increments of the primitive variables.
 
-Kernels: inverse diagonal blocks, one coloured sweep, guarded update. Off-diagonal products are recomputed, never stored.
+Kernels: inverse diagonal blocks, one coloured sweep. Off-diagonal products are recomputed, never stored.
 Method: block LU-SGS of R. F. Chen, Z. J. Wang, AIAA J. 38 (2000) 2238-2245, with the dissipation of `jacobian`.
 """
 
@@ -344,32 +344,6 @@ def sweep(topology, state, sensor, residual, inverse, change, gamma, forward):
                             + inverse[i, 5 * k + 3, n] * rhs[3, n]
                             + inverse[i, 5 * k + 4, n] * rhs[4, n]
                         )
-
-
-@kernel
-def apply_change(topology, state, change, largest, limited):
-    """state += change, cell by cell scaled so that density and pressure change by at most `largest` of themselves.
-
-    `limited` [chunk, lane] counts the cells that were scaled.
-    """
-    lanes = state.shape[2]
-    chunk_cells = topology.chunk_cells
-    for chunk in prange(chunk_cells.shape[0] - 1):
-        count = np.zeros(lanes, state.dtype)
-        for i in range(chunk_cells[chunk], chunk_cells[chunk + 1]):
-            for n in range(lanes):
-                real = type(largest)
-                r = state[i, 0, n]
-                p = state[i, 4, n]
-                size = max(abs(change[i, 0, n]) / r, abs(change[i, 4, n]) / p)
-                factor = largest / size if size > largest else real(1)
-                count[n] += real(1) if size > largest else real(0)
-                state[i, 0, n] = r + factor * change[i, 0, n]
-                state[i, 1, n] += factor * change[i, 1, n]
-                state[i, 2, n] += factor * change[i, 2, n]
-                state[i, 3, n] += factor * change[i, 3, n]
-                state[i, 4, n] = p + factor * change[i, 4, n]
-        limited[chunk] = count
 
 
 @kernel

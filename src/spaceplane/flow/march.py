@@ -110,15 +110,17 @@ def march(
         tick(iteration, len(staying), worst)
         if not len(staying):
             break
+        calm = np.ones(len(norms), dtype=bool)
         if before is not None:
             cfl = feedback(cfl, before, norms, limited, caution)
+            calm = norms < 1.5 * before
         before = norms
         if leaving:
             source = np.concatenate([staying, np.full(len(ensemble.lanes) - len(staying), staying[-1])])
             ensemble.keep(staying)
             source = source[: len(ensemble.lanes)]
-            cfl, before, limited = cfl[source], before[source], limited[source]
+            cfl, before, calm = cfl[source], before[source], calm[source]
             ensemble.evaluate()
         ensemble.correct(cfl)
-        limited = ensemble.apply(caution.largest)
+        limited = ensemble.apply(caution.largest, calm)
     return histories
