@@ -187,12 +187,17 @@ def reachable(a: Assembly, root: np.ndarray) -> np.ndarray:
     return outside[label][root]
 
 
-def finish(a: Assembly, root: np.ndarray, kept: np.ndarray, cell: float, corner: np.ndarray, part_names: tuple) -> Mesh:
+def finish(
+    a: Assembly, root: np.ndarray, kept: np.ndarray, cell: float, corner: np.ndarray, part_names: tuple
+) -> tuple[Mesh, np.ndarray]:
     """Build the Mesh in metres: clusters become cells, ordered along a Morton curve.
 
     Args:
         root: [cell] representative of each cluster; kept: [cell] cells that stay.
         cell: wall cell, m. corner: [xyz] of the grid's integer origin, m.
+
+    Returns:
+        The mesh, and for each cell given the cell of the mesh that it became part of (-1: left out).
     """
     stands = np.flatnonzero((root == np.arange(len(root))) & kept)
     place = 2.0 * a.cube[stands]
@@ -223,7 +228,7 @@ def finish(a: Assembly, root: np.ndarray, kept: np.ndarray, cell: float, corner:
         ],
         axis=1,
     )
-    return Mesh(
+    mesh = Mesh(
         cell_volume=volume * cell**3,
         cell_center=corner + center * cell,
         cell_size=a.size[order] * cell,
@@ -243,6 +248,7 @@ def finish(a: Assembly, root: np.ndarray, kept: np.ndarray, cell: float, corner:
         part_names=part_names,
         cell_cube_center=corner + a.cube[order] * cell,
     )
+    return mesh, number
 
 
 def _walls(a: Assembly, cell: np.ndarray, kept: np.ndarray, parts: int):

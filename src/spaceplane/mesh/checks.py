@@ -26,6 +26,7 @@ def describe(
     cut: CutCells,
     shift: np.ndarray,
     wetted: np.ndarray,
+    body: float,
     merged: int,
     enclosed: float,
     seconds: dict,
@@ -35,14 +36,13 @@ def describe(
     Args:
         shift: [xyz] cell of the domain that the window of `cut` begins with.
         wetted: [part] wetted area, m2.
+        body: volume of the domain that the cells leave out, m3.
         merged: control volumes merged into a neighbour.
         enclosed: volume of air, m3, that the far field cannot reach and that was left out.
         seconds: by phase.
     """
     begin = time.perf_counter()
     sides = 2 if grid.half else 1
-    domain = np.prod(grid.size.astype(float)) * (grid.cell * 2**grid.levels) ** 3 * sides
-    volume = domain - float(mesh.cell_volume.sum()) - enclosed
     by_part = _part_errors(mesh, surface, wetted)
     warnings = _thin_warnings(cut, shift, surface, grid)
     if enclosed > 0.0:
@@ -68,9 +68,9 @@ def describe(
             [float(x) for x in grid.lower],
             [float(x) for x in grid.upper],
         ],
-        "volume": volume,
+        "volume": body,
         "enclosed_volume": enclosed,
-        "volume_error": abs(volume - surface.volume) / surface.volume,
+        "volume_error": abs(body - surface.volume) / surface.volume,
         "area_error": max(errors["area"] for errors in by_part.values()),
         "projected_area_error": max(max(errors["projected"]) for errors in by_part.values()),
         "errors_by_part": by_part,

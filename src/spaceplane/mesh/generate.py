@@ -11,6 +11,7 @@ import numpy as np
 from spaceplane.errors import InputError
 from spaceplane.mesh import assembly, octree
 from spaceplane.mesh.checks import describe
+from spaceplane.mesh.coarsen import coarsen
 from spaceplane.mesh.cutcells import CutCells, cut_cells
 from spaceplane.mesh.grid import Grid, boxes_in_cells, place_grid
 from spaceplane.mesh.mesh import Mesh
@@ -63,19 +64,27 @@ def _symmetric(surface: Surface, settings: MeshSettings) -> bool:
 def _meet_target(surface: Surface, settings: MeshSettings) -> Mesh:
     """Choose the wall cell by secant steps on log(cells) over log(wall cell), from a cheap first mesh."""
     half = _symmetric(surface, settings)
-    cell = math.sqrt(surface.area / max(settings.target_cells / 25.0, 20.0))
-    slope = -2.0
-    previous = None
-    for _ in range(6):
-        mesh = _generate(surface, dataclasses.replace(settings, wall_cell=cell, target_cells=None), half)
-        if abs(mesh.cells / settings.target_cells - 1.0) <= 0.1:
+    goal = math.log(settings.target_cells)
+    trial = math.log(math.sqrt(surface.area / max(settings.target_cells / 12.0, 20.0)))
+    small, large = -math.inf, math.inf  # log wall cells known to give too many and too few cells
+    slope = -1.7
+    best = previous = None
+    for _ in range(10):
+        mesh = _generate(surface, dataclasses.replace(settings, wall_cell=math.exp(trial), target_cells=None), half)
+        miss = math.log(mesh.cells) - goal
+        if best is None or abs(miss) < abs(best[0]):
+            best = (miss, mesh)
+        if abs(miss) <= 0.1:
             break
-        point = (math.log(cell), math.log(mesh.cells))
-        if previous is not None and abs(point[0] - previous[0]) > 1e-6:
-            slope = min(max((point[1] - previous[1]) / (point[0] - previous[0]), -3.0), -0.5)
-        previous = point
-        cell = math.exp(point[0] + (math.log(settings.target_cells) - point[1]) / slope)
-    if abs(mesh.cells / settings.target_cells - 1.0) > 0.15:
+        small, large = (max(small, trial), large) if miss > 0.0 else (small, min(large, trial))
+        if previous is not None and abs(trial - previous[0]) > 1e-6:
+            slope = min(max((miss - previous[1]) / (trial - previous[0]), -3.0), -0.7)
+        previous = (trial, miss)
+        trial -= miss / slope
+        if not small < trial < large:
+            trial = 0.5 * (small + large)
+    miss, mesh = best
+    if abs(math.expm1(miss)) > 0.15:
         mesh.record["warnings"].append(f"target_cells: {settings.target_cells} asked, {mesh.cells} reached")
     return mesh
 
@@ -125,6 +134,10 @@ def _generate(surface: Surface, settings: MeshSettings, half: bool) -> Mesh:
     leaves = octree.build_leaves(refined, octree.Window(shift, cut.fluid))
     octree_done = clock()
 
+    # in wall cells the leaves' volumes are integers and their sum exact
+    leaf_volume = int((8 ** leaves.level.astype(np.int64)).sum())
+    body = float(int(np.prod(extent)) - leaf_volume) - float(cut.volume.sum())
+
     upstream = surface.area_vectors[:, 0] < 0.0
     whole = assembly.assemble(cut, leaves, shift, surface.part.astype(np.int64), upstream, half)
     root = assembly.join_small(whole, settings.merge_fraction)
@@ -134,7 +147,7 @@ def _generate(surface: Surface, settings: MeshSettings, half: bool) -> Mesh:
         root = assembly.join_small(whole, settings.merge_fraction, np.concatenate([root, root + n]))
     kept = assembly.reachable(whole, root)
     merge_done = clock()
-    mesh = assembly.finish(whole, root, kept, grid.cell, grid.corner, surface.part_names)
+    mesh, _ = assembly.finish(whole, root, kept, grid.cell, grid.corner, surface.part_names)
     end = clock()
     seconds = {
         **cut.seconds,
@@ -143,8 +156,32 @@ def _generate(surface: Surface, settings: MeshSettings, half: bool) -> Mesh:
         "merging": merge_done - octree_done,
         "assembly": end - merge_done,
     }
+    body *= grid.cell**3 * (2 if half else 1)
     wetted = np.bincount(whole.polygon_part, whole.polygon_size, minlength=len(surface.part_names)) * grid.cell**2
     enclosed = float(whole.volume[~kept].sum()) * grid.cell**3
     merged = int((root != np.arange(len(root))).sum())
-    mesh.record.update(describe(mesh, surface, settings, grid, cut, shift, wetted, merged, enclosed, seconds))
+    mesh.record.update(describe(mesh, surface, settings, grid, cut, shift, wetted, body, merged, enclosed, seconds))
     return mesh
+
+
+def sequence(
+    surface: Surface, settings: MeshSettings | None = None, levels: int = 3
+) -> tuple[list[Mesh], list[np.ndarray]]:
+    """The mesh and its nested coarser companions, for a start on coarse grids.
+
+    Args:
+        surface, settings: as for `generate`.
+        levels: number of meshes; each coarser one joins octree siblings of the one before.
+
+    Returns:
+        Meshes from coarse to fine, and for each but the first [cell] int32 the cell of the mesh before that holds it:
+        `maps[n]` carries values of `meshes[n]` to `meshes[n + 1]` as `coarse_values[maps[n]]`.
+    """
+    if levels < 1:
+        raise InputError(f"levels: {levels}, must be at least 1")
+    meshes, maps = [generate(surface, settings)], []
+    for _ in range(levels - 1):
+        coarse, cell = coarsen(meshes[0], (settings or MeshSettings()).merge_fraction)
+        meshes.insert(0, coarse)
+        maps.insert(0, cell)
+    return meshes, maps
