@@ -15,7 +15,7 @@ from spaceplane.vehicle.shape import ShapeParameters
 from spaceplane.vehicle.validity import GeometryError
 
 KEEL_DEPTH = 1.5  # m, keel of the constant section below the reference axis
-STUB = 0.35  # m, wing inboard of the chine, inside the fuselage
+STUB = 0.7  # m, wing inboard of the chine, inside the fuselage
 HINGE_THICKNESS_RATIO = 0.85  # thickness at the hinge over the local (winglet) or corner (wing) thickness
 TIP_THICKNESS_RATIO = 0.85  # winglet thickness at the tip over that at the corner
 KINK_BLEND = 0.5  # m, half-width over which leading-edge kinks are rounded
@@ -199,7 +199,7 @@ class Layout:
         mean = (x_kink - self.x_apex) / q_kink
         inner = 1.35 * mean  # an ogee: more sweep at the body than at the kink
         strake = self.x_apex + inner * q - (0.35 * mean / q_kink) * q**2
-        strake = np.where(q < 0, self.x_apex + np.minimum(inner, 6.0) * q, strake)
+        strake = np.where(q < 0, self.x_apex + np.minimum(inner, 4.0) * q, strake)
         x_root = self.x_corner - s.winglet_bottom_length_m
         back = self.trailing_slopes[1]
         x_top = self.x_corner + back * s.winglet_length_m - s.winglet_top_length_m

@@ -88,7 +88,7 @@ class ShapeParameters:
         0.2, 0.1, 0.35, "by how much the chine is wider than the top of the side wall", "5.4 m width of HORUS-2B"
     )
     fuselage_crown_ratio: float = _parameter(
-        1.03, 0.8, 1.1, "height of the arched top over the half-width fuselage_width_m", "4.5 m height of HORUS-2B"
+        1.03, 0.95, 1.1, "height of the arched top over the half-width fuselage_width_m", "4.5 m height of HORUS-2B"
     )
     strake_length_m: float = _parameter(
         11.7, 9.0, 13.0, "strake apex ahead of the base (trimmed to the nosecone)", OPEN

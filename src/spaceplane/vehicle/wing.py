@@ -63,7 +63,7 @@ def _stations(layout: Layout, spacing: float) -> np.ndarray:
     step = np.maximum(np.abs(layout.leading_slope(q)) * 0.7, 1.0)
     measure = np.concatenate([[0.0], np.cumsum(0.5 * (step[1:] + step[:-1])) * 0.005])
     tip_start = layout.q_tip - TIP_ROUNDING
-    stations = [np.array([-STUB, -0.5 * STUB])]
+    stations = [-STUB * np.array([1.0, 0.75, 0.5, 0.25])]
     for low, high in ((0.0, layout.panel_length), (layout.panel_length, tip_start)):
         m = np.interp([low, high], q, measure)
         stations.append(np.interp(np.linspace(*m, max(4, int(np.ceil((m[1] - m[0]) / spacing))) + 1), measure, q)[:-1])
@@ -95,21 +95,29 @@ def wing_shell(layout: Layout, spacing: float) -> Shell:
         chord, nose, radius, thick, hinge, layout.hinge_thickness(np.maximum(q, 0.0)),
         shape.trailing_edge_thickness_m, counts,
     )  # fmt: skip
-    # Round the tip seen from ahead: the section shrinks towards its middle over the last half-thickness.
-    half = 0.5 * thick
-    v = np.clip((q - layout.q_tip + half) / half, 0, 1)
-    z = (
-        half[:, None] * (1 - np.sqrt(1 - v**2))[:, None] * np.minimum(1, 2 * hinge_ratio(z))
-        + z * np.sqrt(1 - v**2)[:, None]
-    )
-    y0, z0, elevation = layout.path(q)
+    # Round the tip seen from ahead: the section shrinks towards its middle line over the last half-thickness.
+    v = np.clip((q - layout.q_tip + 0.5 * thick) / (0.5 * thick), 0, 1)
+    middle = 0.5 * (z + z[:, ::-1])
+    z = middle + np.sqrt(1 - v**2)[:, None] * (z - middle)
+    y0, z0, _ = layout.path(q)
+    across = _section_directions(layout, q)
     grid = np.empty((*x.shape, 3))
     grid[..., 0] = x_lead[:, None] + x
-    grid[..., 1] = y0[:, None] - z * np.sin(elevation)[:, None]
-    grid[..., 2] = z0[:, None] + z * np.cos(elevation)[:, None]
+    grid[..., 1] = y0[:, None] + z * across[:, :1]
+    grid[..., 2] = z0[:, None] + z * across[:, 1:]
     return profile_loft(grid)
 
 
-def hinge_ratio(z: np.ndarray) -> np.ndarray:
-    """[station, 1] one half: the tip's middle lies halfway between the skins."""
-    return np.full((len(z), 1), 0.5)
+def _section_directions(layout: Layout, q: np.ndarray) -> np.ndarray:
+    """[station, yz] along which a section's thickness is laid off from the lower skin.
+
+    The skin's normal, except near the root: there sections turn to the vertical, so that a thick root with much dihedral does
+    not fold over the stub inside the fuselage; the vector is longer by as much as it is oblique, which keeps the upper skin.
+    """
+    elevation = layout.path(np.maximum(q, 1e-9))[2]
+    ramp = 0.3 + layout.shape.wing_root_thickness_m * np.sin(layout.dihedral)
+    t = np.clip(q / ramp, 0.0, 1.0)
+    angle = elevation * t**2 * (3 - 2 * t)
+    length = 1.0 / np.cos(elevation - angle)
+    return np.stack([-np.sin(angle) * length, np.cos(angle) * length], -1)
+
