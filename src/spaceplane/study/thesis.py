@@ -9,6 +9,7 @@ import csv
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
+from decimal import Decimal
 from functools import cache
 from importlib import resources
 
@@ -16,7 +17,7 @@ DERIVATIVES = ("CD_alpha", "CL_alpha", "Cm_alpha", "CY_beta", "Cl_beta", "Cn_bet
 """Derivatives of the thesis's Table 7.1 in its order; its C_S_beta is `CY_beta` here."""
 
 RESOLUTION = 0.02
-"""Changes below this fraction of the value are too small to tell: the tables print two or three digits."""
+"""Changes below this fraction of the value are too small to tell, unless the printed digits hide even more."""
 
 _MISSING = {("wing_thickness_m", "Cl_beta"), ("wing_thickness_m", "Cn_beta")}
 
@@ -62,7 +63,7 @@ def unit_factor(derivative: str) -> float:
 
 
 def resolution(value: float, default: float) -> float:
-    """Return the change that printed digits can hide, in the unit of the values."""
+    """Return the change below which a sign is not trusted, in the unit of the values."""
     return RESOLUTION * max(abs(value), abs(default))
 
 
@@ -73,6 +74,7 @@ def sensitivities() -> tuple[Sensitivity, ...]:
     defaults = {
         (row["parameter"], row["mach"], row["derivative"]): _value(row) for row in rows if row["variant"] == "original"
     }
+    last_digit = _last_digits(rows)
     found = []
     for row in rows:
         name = _name(row["derivative"])
@@ -88,7 +90,7 @@ def sensitivities() -> tuple[Sensitivity, ...]:
                 name,
                 value,
                 default,
-                resolution(value, default),
+                max(resolution(value, default), last_digit[row["table"], row["derivative"]] * unit_factor(name)),
             )
         )
     return tuple(found)
@@ -178,6 +180,15 @@ def _name(derivative: str) -> str:
 
 def _value(row: dict) -> float:
     return float(row["value_per_degree"]) * unit_factor(row["derivative"])
+
+
+def _last_digits(rows: tuple[dict, ...]) -> dict[tuple[str, str], float]:
+    """Return one unit of the last printed digit by table and derivative, as printed (trailing zeros may be lost)."""
+    decimals: dict[tuple[str, str], int] = {}
+    for row in rows:
+        key = row["table"], row["derivative"]
+        decimals[key] = max(decimals.get(key, 0), -int(Decimal(row["value_per_degree"]).as_tuple().exponent))
+    return {key: 10.0**-places for key, places in decimals.items()}
 
 
 @cache
