@@ -84,13 +84,11 @@ def mode(name: str, real: float, imaginary: float, main: str, explanation: str) 
     }
 
 
-def verdict(
-    mode_name: str, criterion: str, paragraph: str, value: float | None, level, limits: dict, note: str = ""
-) -> dict:
+def verdict(mode_name: str, criterion: str, quantity: str, paragraph: str, value, level, limits: dict, note="") -> dict:
     return {
-        "mode": mode_name, "criterion": criterion, "paragraph": paragraph, "vehicle_class": "III", "category": "B",
-        "value": value, "unit": "", "limits": limits, "level": level, "margin": 0.21 if level else None,
-        "applicable": level is not None, "note": note,
+        "mode": mode_name, "criterion": criterion, "quantity": quantity, "paragraph": paragraph, "vehicle_class": "III",
+        "category": "B", "value": value, "unit": "s" if "time" in quantity else "", "limits": limits, "level": level,
+        "margin": 0.21 if level == 1 else None if level is None else -0.049, "applicable": level is not None, "note": note,
     }  # fmt: skip
 
 
@@ -149,11 +147,15 @@ def flight_point(name: str, mach: float, altitude: float, alpha: float) -> dict:
             mode("altitude", -1.2e-14, 0.0, "R", "neutral: zero to round-off"),
         ],
         "verdicts": [
-            verdict("Dutch roll", "damping ratio", "3.3.1.1", 0.031, 2, {"1": 0.08, "2": 0.02, "3": 0.0}),
-            verdict("roll mode", "time constant", "3.3.1.2", 1.1, 1, {"1": 1.4, "2": 3.0, "3": 10.0}),
-            verdict("spiral", "time to double", "3.3.1.3", 3.1, "below 3", {"1": 20, "2": 8, "3": 4}),
-            verdict("short period", "damping ratio", "3.2.2.1.2", None, None, {"1": [0.3, 2.0], "2": [0.2, 2.0], "3": [0.15, None]},
-                    "not applicable: aperiodic; time to double 0.69 s instead"),
+            verdict("lateral oscillation", "lateral-directional oscillation (Dutch roll)", "damping ratio", "3.3.1.1", 0.031, 2,
+                    {"1": ">= 0.08", "2": ">= 0.02", "3": ">= 0"}),
+            verdict("lateral oscillation", "lateral-directional oscillation (Dutch roll)", "natural frequency", "3.3.1.1", 1.31,
+                    1, {"1": ">= 0.4", "2": ">= 0.4", "3": ">= 0.4"}),
+            verdict("roll mode", "roll mode", "time constant", "3.3.1.2", 1.1, 1, {"1": "<= 1.4", "2": "<= 3", "3": "<= 10"}),
+            verdict("spiral", "spiral stability", "time to double", "3.3.1.3", 3.1, "below 3",
+                    {"1": ">= 20", "2": ">= 8", "3": ">= 4"}),
+            verdict("short period", "short period damping", "damping ratio", "3.2.2.1.2", None, None, {},
+                    "not applicable: aperiodic. Instead aperiodic pitch divergence: doubles in 0.69 s."),
         ],
         "convergence": [convergence(*row) for row in labels],
     }  # fmt: skip

@@ -8,24 +8,60 @@ from typing import Annotated
 import typer
 
 from spaceplane.commands import options
-from spaceplane.commands.arguments import existing_file, writable_file, write_json
+from spaceplane.commands.arguments import writable_file, writable_folder, write_json
+from spaceplane.commands.progress import progress_bar
+from spaceplane.errors import InputError
 
-EXAMPLE = "Example: spaceplane compare out/default/result.json out/optimised/result.json --json compare.json"
+EXAMPLE = "Example: spaceplane compare out/default/result.json out/wide/result.json --json compare.json"
 
 
 def compare(
-    first: Annotated[Path, typer.Argument(metavar="A.json", help="result.json of the reference.")],
-    second: Annotated[Path, typer.Argument(metavar="B.json", help="result.json to compare with it.")],
+    first: Annotated[Path | None, typer.Argument(metavar="A.json", help="result.json of the reference.")] = None,
+    second: Annotated[Path | None, typer.Argument(metavar="B.json", help="result.json to compare with it.")] = None,
+    out: Annotated[
+        Path | None, typer.Option("--out", metavar="DIR", help="Write the comparison as JSON, Markdown and HTML here.")
+    ] = None,
+    workers: Annotated[int, typer.Option("--workers", metavar="N", help="Processes, when shapes are computed.")] = 1,
     json_file: options.JsonFile = None,
 ) -> int:
-    """Derivatives, modes and levels of two analyses, flight point by flight point."""
-    existing_file(first, "a result.json")
-    existing_file(second, "a result.json")
-    writable_file(json_file, "--json")
-    from spaceplane.study import compare as comparison
+    """Derivatives, modes and levels of two analyses, flight point by flight point.
 
-    found = comparison.compare(first, second)
-    write_json(found.as_dict(), json_file)
+    Without files: HORUS-2B against the thesis's optimised shape at Mach 0.8, 1.5, 2.5, 5 and 10, computed and kept in the
+    store of --out (out/compare by default).
+    """
+    if (first is None) != (second is None):
+        raise InputError("compare: two result.json files are needed, or none for default against optimised shape")
+    if workers < 1:
+        raise InputError(f"--workers: {workers}, must be at least 1")
+    writable_file(json_file, "--json")
+    folder = Path("out/compare") if first is None and out is None else out
+    if folder is not None:
+        writable_folder(folder)
+    comparison = _computed(folder, workers) if first is None else _read(first, second)
+    from spaceplane.study import compare_page
+
+    write_json(comparison, json_file)
+    files = compare_page.write(comparison, folder) if folder is not None else {}
     if str(json_file) != "-":
-        typer.echo(found.text())
+        typer.echo(compare_page.as_text(comparison))
+        for path in files.values():
+            typer.echo(path)
     return 0
+
+
+def _read(first: Path, second: Path) -> dict:
+    from spaceplane.report.read import read_result
+    from spaceplane.study.compare import compare as side_by_side
+
+    return side_by_side(read_result(first), read_result(second))
+
+
+def _computed(folder: Path, workers: int) -> dict:
+    from spaceplane.study.compare import default_against_optimised
+
+    with progress_bar() as tell:
+
+        def on_change(p) -> None:
+            tell(f"{p.done} of {p.total} shapes: {', '.join(p.running)}", p.done / max(p.total, 1))
+
+        return default_against_optimised(folder / "store.sqlite", on_change, workers)

@@ -43,7 +43,7 @@ def point(p: dict) -> dict:
         "planes": Markup(eigenvalue_planes(modes)),
         "modes": [_mode(m) for m in modes],
         **_eigenvectors(p, modes),
-        "verdicts": [_verdict(v) for v in verdicts],
+        "verdict_groups": _verdict_groups(verdicts),
         "convergence": [_convergence(r) for r in p.get("convergence") or []],
     }
 
@@ -53,19 +53,35 @@ def _in(record: dict, key: str, factor: float) -> float | None:
     return value * factor if is_number(value) else None
 
 
-def _level_chips(verdicts: list[dict]) -> list[dict]:
-    """One chip a mode: its worst applicable level."""
+def criterion_name(criterion: str) -> str:
+    """Short name of a criterion: what stands in brackets, if anything does."""
+    _, bracket, inner = criterion.partition("(")
+    return inner.rstrip(") ") if bracket else criterion
+
+
+def worst_levels(verdicts: list[dict]) -> dict[str, dict]:
+    """For each criterion its worst applicable verdict; the first one where none applies."""
     rank = {1: 1, 2: 2, 3: 3, "below 3": 4}
     worst: dict[str, dict] = {}
     for v in verdicts:
-        level = v.get("level") if v.get("applicable", True) else None
-        known = worst.get(v["mode"])
-        if known is None or rank.get(level, 0) > rank.get(known["level"], 0):
-            worst[v["mode"]] = {"level": level, "title": v.get("criterion") or ""}
+        name = criterion_name(v.get("criterion") or v["mode"])
+        if name not in worst or rank.get(level_of(v), 0) > rank.get(level_of(worst[name]), 0):
+            worst[name] = v
+    return worst
+
+
+def level_of(verdict: dict) -> int | str | None:
+    """A verdict's level; None where it does not apply."""
+    return verdict.get("level") if verdict.get("applicable", True) else None
+
+
+def _level_chips(verdicts: list[dict]) -> list[dict]:
     chips = []
-    for mode, record in worst.items():
-        text = "n/a" if record["level"] is None else level_text(record["level"])
-        chips.append({"css": level_css(record["level"]), "text": f"{mode}: {text}", "title": record["title"]})
+    for name, v in worst_levels(verdicts).items():
+        level = level_of(v)
+        text = f"{name}: {'n/a' if level is None else level_text(level)}"
+        title = v.get("note") or f"{v['mode']}: {v.get('quantity') or v.get('criterion') or ''}"
+        chips.append({"css": level_css(level), "text": text, "title": title})
     return chips
 
 
@@ -173,34 +189,37 @@ def _eigenvectors(p: dict, modes: list[dict]) -> dict:
     }
 
 
+def _verdict_groups(verdicts: list[dict]) -> list[dict]:
+    """Verdicts under their criterion, with paragraph, class and category said once."""
+    groups: dict[tuple, list[dict]] = {}
+    for v in verdicts:
+        key = tuple(v.get(k) or "" for k in ("criterion", "paragraph", "vehicle_class", "category"))
+        groups.setdefault(key, []).append(_verdict(v))
+    return [
+        {"criterion": c, "paragraph": p, "vehicle_class": k, "category": a, "rows": rows}
+        for (c, p, k, a), rows in groups.items()
+    ]
+
+
 def _verdict(v: dict) -> dict:
     limits = v.get("limits") or {}
-    where = ", ".join(str(v[k]) for k in ("vehicle_class", "category") if v.get(k))
-    margin = v.get("margin")
+    margin, unit = v.get("margin"), v.get("unit") or ""
     return {
         "mode": v["mode"],
-        "criterion": v.get("criterion") or "",
-        "paragraph": v.get("paragraph") or "",
-        "where": where,
+        "quantity": v.get("quantity") or "",
         "value": number(v.get("value"), 4),
-        "unit": v.get("unit") or "",
+        "unit": unit,
         "limits": [_limit(limits.get(k)) for k in ("1", "2", "3")],
-        "level": v.get("level") if v.get("applicable", True) else None,
-        "margin": f"{fixed(100 * margin, 0)} %" if is_number(margin) else MISSING,
+        "level": level_of(v),
+        "margin": f"{'+' if margin > 0 else ''}{number(margin, 3)}" if is_number(margin) else MISSING,
+        "inside": is_number(margin) and margin >= 0,
         "note": v.get("note") or "",
     }
 
 
 def _limit(limit: object) -> str:
-    """A limit as given: a number, a pair (range), or text."""
-    if isinstance(limit, list | tuple):
-        low, high = [*limit, None, None][:2]
-        if is_number(low) and is_number(high):
-            return f"{number(low, 3)} to {number(high, 3)}"
-        return f"≥ {number(low, 3)}" if is_number(low) else f"≤ {number(high, 3)}" if is_number(high) else MISSING
-    if isinstance(limit, dict):
-        return _limit([limit.get("lower", limit.get("min")), limit.get("upper", limit.get("max"))])
-    return str(limit) if isinstance(limit, str) else number(limit, 3)
+    """A limit as it is given, text or number."""
+    return limit.replace(">=", "≥").replace("<=", "≤") if isinstance(limit, str) else number(limit, 3)
 
 
 def _convergence(record: dict) -> dict:

@@ -7,7 +7,7 @@ import json
 from pathlib import Path
 
 from spaceplane.report import sections
-from spaceplane.report.picture import COLOUR_STOPS, still
+from spaceplane.report.picture import COLOUR_STOPS, stills
 from spaceplane.report.read import level_text, read_result
 from spaceplane.report.surface_data import ColouredSurface, pack, read_surface
 
@@ -50,6 +50,7 @@ def render(result: dict, surface: ColouredSurface | None) -> str:
         loader=jinja2.PackageLoader("spaceplane.report"), autoescape=True, undefined=jinja2.StrictUndefined
     )
     environment.filters |= {"level_text": level_text, "level_css": sections.level_css, "words": sections.words}
+    environment.filters["capitalize_first"] = lambda text: text[:1].upper() + text[1:]
     points = [sections.point(p) for p in result["flight_points"]]
     macros = environment.get_template("macros.html").make_module({"points": points})
     context = {
@@ -74,10 +75,9 @@ def _surface_context(surface: ColouredSurface | None, names: list[str]) -> dict:
     if surface is None:
         return {"surface": None, "stills": [], "parts": []}
     packed = pack(surface) | {"stops": COLOUR_STOPS}
-    stills = [
-        (name, base64.b64encode(still(surface, surface.cp[name])).decode()) for name in names if name in surface.cp
-    ]
-    return {"surface": Markup(json.dumps(packed).replace("</", "<\\/")), "stills": stills, "parts": packed["parts"]}
+    drawn = stills(surface, {name: surface.cp[name] for name in names if name in surface.cp})
+    pictures = [(name, base64.b64encode(png).decode()) for name, png in drawn.items()]
+    return {"surface": Markup(json.dumps(packed).replace("</", "<\\/")), "stills": pictures, "parts": packed["parts"]}
 
 
 def _template_text(name: str) -> str:

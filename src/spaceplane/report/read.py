@@ -12,13 +12,13 @@ SCHEMA_VERSION = 1
 
 
 def read_result(out_dir: Path) -> dict:
-    """The `result.json` of `out_dir`.
+    """The `result.json` of `out_dir`, which may also be the file itself.
 
     Raises:
         InputError: no such folder or file, not JSON, or another schema.
     """
     out_dir = Path(out_dir)
-    path = out_dir if out_dir.suffix == ".json" else out_dir / "result.json"
+    path = out_dir if out_dir.suffix == ".json" and not out_dir.is_dir() else out_dir / "result.json"
     if not path.parent.is_dir():
         raise InputError(f"{out_dir}: no such folder")
     if not path.is_file():

@@ -11,7 +11,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from spaceplane.report.flight_point import LEVEL_CSS, time_text
+from spaceplane.report.flight_point import LEVEL_CSS, level_of, time_text, worst_levels
 from spaceplane.report.names import stability
 from spaceplane.report.numbers import MISSING, duration, fixed, grouped, is_number, measured, number
 from spaceplane.report.plots import eigenvalue_text
@@ -113,27 +113,20 @@ def _modes_table(title: str, modes: list[dict]) -> Table:
 
 
 def _levels_table(points: list[dict]) -> Table:
-    """MIL-F-8785C levels: a row for each mode and criterion, a column for each flight point."""
+    """MIL-F-8785C levels: a row for each criterion with its worst level, a column for each flight point."""
     table = _table("MIL-F-8785C")
     for p in points:
         table.add_column(p["name"], justify="right", no_wrap=True)
-    rows: dict[tuple, list[Text]] = {}
-    for index, p in enumerate(points):
-        for v in p.get("verdicts") or []:
-            key = (v["mode"], v.get("criterion") or "", v.get("paragraph") or "")
-            cells = rows.setdefault(key, [Text(MISSING, style="dim") for _ in points])
-            cells[index] = _level_cell(v)
-    for (mode, criterion, paragraph), cells in rows.items():
-        table.add_row(Text(f"{mode}: {criterion} ({paragraph})", overflow="fold"), *cells)
+    found = [worst_levels(p.get("verdicts") or []) for p in points]
+    for name in dict.fromkeys(name for worst in found for name in worst):
+        paragraph = next(w[name].get("paragraph") or "" for w in found if name in w)
+        table.add_row(f"{name} ({paragraph})", *(_level_cell(w.get(name)) for w in found))
     return table
 
 
-def _level_cell(v: dict) -> Text:
-    level = v.get("level") if v.get("applicable", True) else None
-    value = f" ({number(v['value'], 3)})" if is_number(v.get("value")) else ""
-    return Text(
-        ("n/a" if level is None else level_text(level)) + value, style=COLOURS.get(LEVEL_CSS.get(level, ""), "dim")
-    )
+def _level_cell(verdict: dict | None) -> Text:
+    level = level_of(verdict) if verdict else None
+    return Text("n/a" if level is None else level_text(level), style=COLOURS.get(LEVEL_CSS.get(level, ""), "dim"))
 
 
 def print_modes(record: dict, console: Console | None = None) -> None:

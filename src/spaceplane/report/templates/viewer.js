@@ -48,7 +48,7 @@
       float key = max(dot(unit, normalize(vec3(-0.35, 0.55, 0.8))), 0.0);
       float fill = 0.5 + 0.5 * unit.y;
       float shine = pow(max(dot(unit, normalize(vec3(-0.18, 0.29, 0.94))), 0.0), 40.0);
-      colour = vec4(base * (0.46 + 0.16 * fill + 0.46 * key) + 0.10 * shine, 1.0);
+      colour = vec4(base * (0.56 + 0.18 * fill + 0.36 * key) + 0.09 * shine, 1.0);
     }`;
 
   function compile(type, text) {
