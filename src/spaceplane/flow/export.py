@@ -139,16 +139,32 @@ def _weights(surface: Surface, mesh: Mesh, chosen: np.ndarray, distance: np.ndar
 
 def _cubes(mesh: Mesh) -> tuple[np.ndarray, np.ndarray]:
     """Shared nodes [node, xyz] and hexahedra [cell, 8] of the octree's cubes."""
-    if mesh.cell_cube_center is None:
-        raise InputError("mesh: only octree meshes can be written as VTU, this one has no cubes")
+    center = cube_centers(mesh)
     finest = mesh.cell_size.min()
-    origin = (mesh.cell_cube_center - 0.5 * mesh.cell_size[:, None]).min(axis=0)
-    corners = mesh.cell_cube_center[:, None, :] + 0.5 * mesh.cell_size[:, None, None] * _CORNERS
-    lattice = np.rint((corners - origin) / finest).astype(np.int64).reshape(-1, 3)
+    corners = center[:, None, :] + 0.5 * mesh.cell_size[:, None, None] * _CORNERS
+    lattice = np.rint((corners - corners.min(axis=(0, 1))) / finest).astype(np.int64).reshape(-1, 3)
     extent = lattice.max(axis=0) + 1
     key = (lattice[:, 0] * extent[1] + lattice[:, 1]) * extent[2] + lattice[:, 2]
     _, first, inverse = np.unique(key, return_index=True, return_inverse=True)
     return corners.reshape(-1, 3)[first], inverse.reshape(-1, 8)
+
+
+def cube_centers(mesh: Mesh) -> np.ndarray:
+    """[cell, xyz] centre, m, of the octree cube that holds the centroid of each cell.
+
+    Whole cells have it as their centroid. Cut cells lie in the cube of their size on the lattice whose corner is
+    that of the far field.
+
+    Raises:
+        InputError: the mesh is not an octree.
+    """
+    size = mesh.cell_size[:, None]
+    corner = (mesh.cell_center - 0.5 * size).min(axis=0)
+    center = corner + (np.floor((mesh.cell_center - corner) / size) + 0.5) * size
+    whole = np.abs(mesh.cell_volume / mesh.cell_size**3 - 1.0) < 1e-9
+    if not whole.any() or np.abs((center - mesh.cell_center)[whole] / size[whole]).max() > 1e-6:
+        raise InputError("mesh: its cells are not the cubes of an octree, so they cannot be written as VTU")
+    return center
 
 
 def _note(data, solution: Solution) -> None:

@@ -1,0 +1,153 @@
+"""The vehicle with given deflections in given free streams, and with one control surface after another moved."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import xarray as xr
+
+from spaceplane.aero.derivatives import CONTROLS, by_symmetry, control_derivatives
+from spaceplane.aero.integrate import integrate, wetted_area
+from spaceplane.flow.settings import FlowSettings
+from spaceplane.flow.solution import ConvergenceRecord, FlowConditions, Solution
+from spaceplane.flow.solve import solve
+from spaceplane.mesh.generate import generate
+from spaceplane.mesh.settings import MeshSettings
+from spaceplane.vehicle.build import build
+from spaceplane.vehicle.controls import CONTROL_LIMITS_DEG, ControlDeflections
+from spaceplane.vehicle.presets import Vehicle
+from spaceplane.vehicle.surface import Surface
+
+Progress = Callable[[str, int, int, str], None]
+
+
+@dataclass(frozen=True)
+class SolvedBody:
+    """One body and the flow around it.
+
+    Attributes:
+        surface: the body.
+        solution: the flow, with its mesh.
+        seconds: wall time, s, of "geometry", "mesh" and "flow".
+    """
+
+    surface: Surface
+    solution: Solution
+    seconds: dict[str, float]
+
+
+@dataclass(frozen=True)
+class ControlRun:
+    """The base conditions on the vehicle with one surface moved.
+
+    Attributes:
+        surface: the control surface.
+        step: how far it was moved, rad.
+        deflections: of all surfaces.
+        coefficients: see `integrate`; one condition per flight point.
+        records: [flight point] how it converged.
+        cells: of its mesh.
+        force_scale: wetted over reference area, which takes the records' forces to the reference area.
+        seconds: wall time, s, of "geometry", "mesh" and "flow".
+    """
+
+    surface: str
+    step: float
+    deflections: ControlDeflections
+    coefficients: xr.Dataset
+    records: tuple[ConvergenceRecord, ...]
+    cells: int
+    force_scale: float
+    seconds: dict[str, float]
+
+    @property
+    def label(self) -> str:
+        """Surface and step, such as elevon_left+5 deg."""
+        return f"{self.surface}{math.degrees(self.step):+.3g} deg"
+
+
+def is_symmetric(deflections: ControlDeflections) -> bool:
+    """Whether left and right surfaces are deflected alike (the shape itself always is its own mirror image)."""
+    return deflections.elevon_left == deflections.elevon_right and deflections.rudder_left == deflections.rudder_right
+
+
+def solve_vehicle(
+    vehicle: Vehicle,
+    deflections: ControlDeflections,
+    conditions: FlowConditions,
+    mesh_settings: MeshSettings,
+    flow_settings: FlowSettings,
+    progress: Progress | None = None,
+    name: str = "body",
+) -> SolvedBody:
+    """Build, mesh and solve one body; its name stands before each phase told to `progress`."""
+
+    def say(phase: str, done: int, total: int, text: str) -> None:
+        if progress:
+            progress(f"{name}: {phase}", done, total, text)
+
+    began = time.perf_counter()
+    say("geometry", 0, 1, "")
+    surface = build(vehicle.shape, deflections)
+    built = time.perf_counter()
+    say("mesh", 0, 1, "")
+    mesh = generate(surface, mesh_settings)
+    meshed = time.perf_counter()
+    solution = solve(mesh, conditions, flow_settings, say)
+    seconds = {"geometry": built - began, "mesh": meshed - built, "flow": time.perf_counter() - meshed}
+    return SolvedBody(surface, solution, seconds)
+
+
+def control_runs(
+    vehicle: Vehicle,
+    deflections: ControlDeflections,
+    step: float,
+    conditions: FlowConditions,
+    mesh_settings: MeshSettings,
+    flow_settings: FlowSettings,
+    two_step_sizes: bool = False,
+    progress: Progress | None = None,
+) -> tuple[ControlRun, ...]:
+    """Solve the conditions on bodies with one surface moved by `step`, rad, or by minus that where limits ask for it.
+
+    Right-hand surfaces are left out where symmetry gives them. With `two_step_sizes` each surface is moved by half the
+    step as well.
+    """
+    symmetric = is_symmetric(deflections) and not conditions.beta.any()
+    runs = []
+    for surface in CONTROLS:
+        if symmetric and surface.endswith("_right"):
+            continue
+        upper = math.radians(CONTROL_LIMITS_DEG[surface][1])
+        start = getattr(deflections, surface)
+        full = step if start + step <= upper + 1e-12 else -step
+        for size in (full, 0.5 * full) if two_step_sizes else (full,):
+            moved = replace(deflections, **{surface: start + size})
+            name = f"{surface} {math.degrees(size):+g} deg"
+            body = solve_vehicle(vehicle, moved, conditions, mesh_settings, flow_settings, progress, name)
+            solution = body.solution
+            runs.append(
+                ControlRun(
+                    surface,
+                    size,
+                    moved,
+                    integrate(solution, vehicle.reference),
+                    solution.records,
+                    solution.mesh.cells,
+                    wetted_area(solution.mesh) / vehicle.reference.area,
+                    body.seconds,
+                )
+            )
+    return tuple(runs)
+
+
+def slopes_of(base: xr.Dataset, runs: Sequence[ControlRun], symmetric: bool) -> xr.Dataset:
+    """Control derivatives of all five surfaces from `control_runs`, dims (point, part)."""
+    moved: dict[str, list] = {}
+    for run in runs:
+        moved.setdefault(run.surface, []).append((run.step, run.coefficients))
+    complete = by_symmetry(moved) if symmetric else moved
+    return control_derivatives(base, {name: complete[name] for name in CONTROLS})

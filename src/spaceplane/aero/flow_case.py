@@ -1,0 +1,138 @@
+"""Any body in any list of free streams: coefficients as plain records and as polars."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+
+from spaceplane.aero.conditions import product
+from spaceplane.aero.integrate import COEFFICIENTS, PRESSURES, TOTAL, Reference, integrate
+from spaceplane.flow.settings import FlowSettings
+from spaceplane.flow.solution import Solution
+from spaceplane.flow.solve import solve
+from spaceplane.mesh.generate import generate
+from spaceplane.mesh.mesh import Mesh
+from spaceplane.mesh.settings import MeshSettings
+from spaceplane.vehicle.surface import Surface
+
+Progress = Callable[..., None]
+
+
+@dataclass(frozen=True)
+class FlowCase:
+    """What `run_flow` found.
+
+    Attributes:
+        records: one JSON-ready dict per condition, see `records`.
+        coefficients: the same by part, see `integrate`.
+        mesh: the mesh.
+        solution: the flow.
+    """
+
+    records: list[dict]
+    coefficients: xr.Dataset
+    mesh: Mesh
+    solution: Solution
+
+
+def run_flow(
+    body: Surface,
+    machs: Sequence[float],
+    alphas: Sequence[float],
+    betas: Sequence[float],
+    reference: Reference,
+    mesh_settings: MeshSettings,
+    flow_settings: FlowSettings,
+    progress: Progress | None = None,
+) -> FlowCase:
+    """Mesh a body and solve every combination of Mach number, angle of attack and sideslip in one ensemble.
+
+    Args:
+        body: watertight surface.
+        machs: Mach numbers.
+        alphas: angles of attack, rad.
+        betas: sideslip angles, rad.
+        reference: area, chord, span and moment centre, SI.
+        mesh_settings: how to mesh.
+        flow_settings: how to solve.
+        progress: passed on to the solver.
+
+    Raises:
+        InputError: a bad condition or body.
+    """
+    conditions = product(list(machs), list(alphas), list(betas))
+    mesh = generate(body, mesh_settings)
+    solution = solve(mesh, conditions, flow_settings, progress)
+    coefficients = integrate(solution, reference)
+    return FlowCase(records(solution, coefficients), coefficients, mesh, solution)
+
+
+def records(solution: Solution, coefficients: xr.Dataset) -> list[dict]:
+    """One dict per condition: conditions, coefficients, and how they converged.
+
+    Keys: mach, alpha_deg, beta_deg, COEFFICIENTS, PRESSURES, converged, verdict, residual_drop, iterations, seconds,
+    cells, reason. `seconds` is the wall time of the whole ensemble divided by its conditions. Values of a
+    failed condition are None.
+    """
+    c = solution.conditions
+    seconds = total_seconds(solution) / max(len(c), 1)
+    totals = coefficients.sel(part=TOTAL)
+    result = []
+    for i, record in enumerate(solution.records):
+        values = {name: _number(totals[name].values[i]) for name in (*COEFFICIENTS, *PRESSURES)}
+        result.append(
+            {
+                "mach": float(c.mach[i]),
+                "alpha_deg": round(math.degrees(c.alpha[i]), 10),
+                "beta_deg": round(math.degrees(c.beta[i]), 10),
+                **values,
+                "converged": record.good,
+                "verdict": record.verdict,
+                "residual_drop": _number(record.residual_drop),
+                "iterations": int(record.iterations),
+                "seconds": round(seconds, 3),
+                "cells": solution.mesh.cells,
+                "reason": record.reason,
+            }
+        )
+    return result
+
+
+def polar(
+    body: Surface,
+    machs: Sequence[float],
+    alphas: Sequence[float],
+    reference: Reference,
+    mesh_settings: MeshSettings,
+    flow_settings: FlowSettings,
+    progress: Progress | None = None,
+) -> xr.Dataset:
+    """Total coefficients over Mach number and angle of attack (rad) of one body in one ensemble.
+
+    Returns:
+        Dataset with dims (mach, alpha): COEFFICIENTS, their `_spread`, and `verdict`. Failed conditions are NaN.
+    """
+    case = run_flow(body, machs, alphas, [0.0], reference, mesh_settings, flow_settings, progress)
+    totals = case.coefficients.sel(part=TOTAL)
+    shape = (len(machs), len(alphas))
+    variables = {
+        name: (("mach", "alpha"), variable.values.reshape(shape), variable.attrs)
+        for name, variable in totals.data_vars.items()
+    }
+    variables["verdict"] = (("mach", "alpha"), totals.verdict.values.reshape(shape))
+    coordinates = {"mach": ("mach", list(machs), {"units": "1"}), "alpha": ("alpha", list(alphas), {"units": "rad"})}
+    return xr.Dataset(variables, coordinates, totals.attrs)
+
+
+def total_seconds(solution: Solution) -> float:
+    """Wall time of the solver, s, all phases."""
+    seconds = solution.statistics.get("seconds", {})
+    return float(sum(seconds.values())) if isinstance(seconds, dict) else float(seconds)
+
+
+def _number(value: float) -> float | None:
+    return float(value) if np.isfinite(value) else None

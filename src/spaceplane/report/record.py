@@ -1,0 +1,233 @@
+"""The published record of an analysis: what `result.json` holds (schema in docs/formats.md)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import asdict, is_dataclass
+from datetime import UTC, datetime
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import xarray as xr
+
+from spaceplane import __version__
+from spaceplane.aero.conditions import ConditionPlan
+from spaceplane.aero.integrate import COEFFICIENTS, PRESSURES, TOTAL, wetted_area
+from spaceplane.dynamics.modes import to_record as mode_record
+from spaceplane.flow.solution import ConvergenceRecord
+from spaceplane.qualities.assess import to_record as verdict_record
+from spaceplane.report.read import SCHEMA, SCHEMA_VERSION
+from spaceplane.vehicle.controls import ControlDeflections
+from spaceplane.vehicle.shape import PARAMETERS
+from spaceplane.vehicle.surface import Surface
+
+if TYPE_CHECKING:
+    from spaceplane.pipeline import Analysis, PointAnalysis
+    from spaceplane.vehicle.presets import Vehicle
+
+BY_PART = ("CL", "CD", "CY", "Cl", "Cm", "Cn")
+
+
+def result(analysis: Analysis) -> dict:
+    """The whole record of an analysis, ready for JSON: no NaN, missing numbers None."""
+    return plain(
+        {
+            "schema": SCHEMA,
+            "schema_version": SCHEMA_VERSION,
+            "created": datetime.now(UTC).isoformat(timespec="seconds"),
+            "version": __version__,
+            "vehicle": vehicle(analysis.vehicle, analysis.settings.deflections, analysis.body.surface),
+            "settings": analysis.settings.as_dict(),
+            "mesh": mesh(analysis),
+            "solver": solver(analysis),
+            "flight_points": [flight_point(analysis, index) for index in range(len(analysis.points))],
+            "warnings": list(analysis.warnings),
+        }
+    )
+
+
+def plain(value: Any) -> Any:
+    """Anything as JSON values: arrays as lists, records as dicts, numbers that are not finite as None."""
+    if is_dataclass(value) and not isinstance(value, type):
+        return plain(asdict(value))
+    if isinstance(value, Mapping):
+        return {str(key): plain(item) for key, item in value.items()}
+    if isinstance(value, np.ndarray):
+        return plain(value.tolist())
+    if isinstance(value, list | tuple):
+        return [plain(item) for item in value]
+    if isinstance(value, bool | np.bool_):
+        return bool(value)
+    if isinstance(value, int | np.integer):
+        return int(value)
+    if isinstance(value, float | np.floating):
+        return float(value) if math.isfinite(value) else None
+    if value is None or isinstance(value, str):
+        return value
+    raise TypeError(f"no JSON form for {type(value).__name__}")
+
+
+def vehicle(subject: Vehicle, deflections: ControlDeflections, surface: Surface) -> dict:
+    """Shape, mass, reference lengths and geometry."""
+    shape = subject.shape.as_dict()
+    lower, upper = surface.bounds
+    extent = upper - lower
+    mass, reference = subject.mass, subject.reference
+    return {
+        "name": subject.name,
+        "shape": {
+            p.name: {"value": shape[p.name], "unit": p.unit, "default": p.default, "lower": p.lower, "upper": p.upper}
+            for p in PARAMETERS
+        },
+        "deflections_deg": deflections.to_degrees(),
+        "mass": {"mass_kg": mass.mass, "Ixx_kgm2": mass.Ixx, "Iyy_kgm2": mass.Iyy, "Izz_kgm2": mass.Izz},
+        "reference": {
+            "area_m2": reference.area,
+            "c_ref_m": reference.chord,
+            "b_ref_m": reference.span,
+            "moment_center_m": list(reference.moment_center),
+        },
+        "geometry": {
+            "length_m": extent[0],
+            "span_m": extent[1],
+            "height_m": extent[2],
+            "wetted_area_m2": surface.area,
+            "volume_m3": surface.volume,
+            "triangles": len(surface.triangles),
+        },
+    }
+
+
+def flight_point(analysis: Analysis, index: int) -> dict:
+    """One flight point with everything that was found there."""
+    found = analysis.points[index]
+    point, ambient = found.point, found.point.ambient
+    totals = analysis.coefficients.isel(condition=analysis.plan.points[index].base).sel(part=TOTAL)
+    coefficients = {name: float(totals[name]) for name in (*COEFFICIENTS, *PRESSURES)}
+    coefficients["L_over_D"] = coefficients["CL"] / coefficients["CD"] if coefficients["CD"] else None
+    record = {
+        "name": point.name,
+        "mach": point.mach,
+        "altitude_m": point.altitude,
+        "alpha_deg": math.degrees(point.alpha),
+        "beta_deg": math.degrees(point.beta),
+        "gamma_deg": math.degrees(point.gamma),
+        "bank_deg": math.degrees(point.bank),
+        "velocity_ms": point.velocity,
+        "dynamic_pressure_Pa": point.dynamic_pressure,
+        "pressure_Pa": ambient.pressure,
+        "temperature_K": ambient.temperature,
+        "density_kgm3": ambient.density,
+        "alpha_source": point.alpha_source,
+        "knudsen": found.validity.knudsen,
+        "compressibility_factor": found.validity.compressibility_factor,
+        "validity": {
+            "continuum": found.validity.continuum,
+            "ideal_gas": found.validity.ideal_gas,
+            "notes": list(found.validity.notes),
+        },
+        "coefficients": coefficients,
+        "coefficients_by_part": coefficients_by_part(analysis.coefficients, analysis.plan.points[index].base),
+        "derivatives": derivatives(analysis.derivatives, index),
+        "convergence": convergence(analysis, index),
+    }
+    return record | dynamics(found)
+
+
+def coefficients_by_part(coefficients: xr.Dataset, condition: int) -> dict:
+    """Part to coefficient to value at one condition."""
+    at = coefficients.isel(condition=condition)
+    return {
+        str(part): {name: float(at[name].sel(part=part)) for name in BY_PART}
+        for part in at.part.values
+        if part != TOTAL
+    }
+
+
+def derivatives(data: xr.Dataset, point: int) -> dict:
+    """Name to value, error, unit, step and status, in total and by part, at one flight point."""
+    at = data.isel(point=point)
+    names = [name for name in at.data_vars if f"{name}_status" in at.data_vars]
+    return {
+        name: {
+            "value": float(at[name].sel(part=TOTAL)),
+            "error": float(at[f"{name}_error"]),
+            "unit": at[name].attrs["units"],
+            "step": float(at[f"{name}_step"]),
+            "step_unit": at[f"{name}_step"].attrs["units"],
+            "status": str(at[f"{name}_status"].values),
+            "by_part": {str(part): float(at[name].sel(part=part)) for part in at.part.values if part != TOTAL},
+        }
+        for name in names
+    }
+
+
+def convergence(analysis: Analysis, point: int) -> list[dict]:
+    """How each condition of a flight point converged, those of the moved control surfaces included."""
+    plan, solution = analysis.plan, analysis.body.solution
+    scale = wetted_area(solution.mesh) / analysis.vehicle.reference.area
+    rows = [
+        convergence_row(solution.records[i], plan, i, plan.labels[i], scale)
+        for i in np.flatnonzero(plan.point == point)
+    ]
+    base = plan.points[point].base
+    for run in analysis.control_runs:
+        rows.append(convergence_row(run.records[point], plan, base, run.label, run.force_scale))
+    return rows
+
+
+def convergence_row(one: ConvergenceRecord, plan: ConditionPlan, condition: int, label: str, scale: float) -> dict:
+    """How one condition converged; `scale` is the factor that takes its forces to the reference area."""
+    spread = np.asarray(one.window_spread) * scale
+    return {
+        "label": label,
+        "mach": plan.conditions.mach[condition],
+        "alpha_deg": math.degrees(plan.conditions.alpha[condition]),
+        "beta_deg": math.degrees(plan.conditions.beta[condition]),
+        "verdict": one.verdict,
+        "residual_drop": one.residual_drop,
+        "iterations": one.iterations,
+        "window_spread": dict(zip(("CA", "CY", "CN"), spread, strict=True)),
+        "residual_history": np.asarray(one.residual_history),
+        "force_history": np.asarray(one.force_history) * scale,
+        "reason": one.reason,
+    }
+
+
+def dynamics(found: PointAnalysis) -> dict:
+    """Equilibrium, linear model, modes and verdicts at one flight point; empty where there are none."""
+    rates, system = found.rates, found.system
+    return {
+        "equilibrium": {
+            "p_rads": rates.p if rates else None,
+            "q_rads": rates.q if rates else None,
+            "r_rads": rates.r if rates else None,
+        },
+        "A": system.A if system else None,
+        "B": system.B if system else None,
+        "states": system.states if system else [],
+        "inputs": system.inputs if system else [],
+        "form": system.form if system else None,
+        "modes": [mode_record(mode) for mode in found.modes],
+        "verdicts": [verdict_record(verdict) for verdict in found.verdicts],
+        "reason": found.reason,
+    }
+
+
+def mesh(analysis: Analysis) -> dict:
+    """What the generator has to say of the base mesh, and its size against the surface."""
+    made = analysis.body.solution.mesh
+    return {**made.record, "cells": made.cells, "seconds": analysis.body.seconds["mesh"]}
+
+
+def solver(analysis: Analysis) -> dict:
+    """Wall times, precision and number of conditions."""
+    seconds, statistics = analysis.seconds(), analysis.body.solution.statistics
+    return {
+        "seconds": sum(value for name, value in seconds.items() if name.startswith("flow")),
+        "seconds_by_phase": seconds,
+        "precision": statistics.get("precision"),
+        "conditions": sum(len(run.records) for run in analysis.control_runs) + len(analysis.plan.conditions),
+        "base_ensemble": statistics,
+    }
