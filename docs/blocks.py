@@ -102,9 +102,11 @@ def command_line() -> str:
                 if record and "--help" not in record[0]:
                     rows.append((f"`{record[0]}`".replace("|", "\\|"), record[1].replace("|", "\\|")))
             else:
-                rows.append((f"`{parameter.human_readable_name}`", getattr(parameter, "help", "") or ""))
+                rows.append((f"`{parameter.metavar or parameter.name}`".replace("|", "\\|"), parameter.help or ""))
         if rows:
             parts.append(table(("argument", "meaning"), rows) + "\n")
+        if command.epilog:
+            parts.append(f"`{command.epilog.removeprefix('Example: ')}`\n")
 
     section(root, "spaceplane", None)
     return "\n".join(parts)
@@ -251,7 +253,7 @@ def validation_horus() -> str:
     """HORUS-2B: one compact table per coefficient and configuration, Mach across and angle of attack down."""
     from spaceplane.validation import read
 
-    records = read(validation_path("horus"))
+    records = [record for record in read(validation_path("horus")) if record.unit == "-"]
     parts = []
     for quantity in dict.fromkeys(record.quantity for record in records):
         own = {record.condition: record for record in records if record.quantity == quantity}
@@ -268,6 +270,34 @@ def validation_horus() -> str:
         head = ("alpha, deg", *(f"{mach.rstrip(',')}: published / computed (deviation)" for mach in machs))
         parts.append(table(head, rows, "r" * len(head)) + "\n")
     return "\n".join(parts)
+
+
+def horus_lateral() -> str:
+    """The lateral point and the moment centre that fits the published C_m."""
+    from spaceplane.validation import markdown_table, read
+
+    records = [record for record in read(validation_path("horus")) if record.unit != "-"]
+    notes = dict.fromkeys(record.note for record in records if record.note)
+    return markdown_table(records) + "".join(f"\n- {note}" for note in notes)
+
+
+def trust() -> str:
+    """One row per validation case and quantity: how many rows lie inside the band, and the typical deviation."""
+    from statistics import median
+
+    from spaceplane.validation import read
+
+    rows = []
+    for case in ("cones", "sphere", "hb2", "horus"):
+        records = [record for record in read(validation_path(case)) if record.unit != "m"]
+        for quantity in dict.fromkeys(record.quantity for record in records):
+            own = [record for record in records if record.quantity == quantity]
+            gaps = [abs(record.deviation) for record in own if record.deviation is not None]
+            scale, unit = (100.0, " %") if own[0].kind == "relative" else (1.0, "")
+            typical = "-" if not gaps else f"{scale * median(gaps):.2g}{unit}"
+            band = f"{scale * own[0].band:.3g}{unit}"
+            rows.append((case, quantity, typical, band, f"{sum(record.within for record in own)} of {len(own)}"))
+    return table(("case", "quantity", "median deviation", "band", "inside"), rows, "llrrr")
 
 
 def _published_and_computed(record: Any) -> str:
@@ -290,8 +320,10 @@ BLOCKS: dict[str, Callable[[], str]] = {
     "demo coefficients": demo_coefficients,
     "demo modes": demo_modes,
     "demo levels": demo_levels,
+    "trust": trust,
     "validation cones": validation_block("cones"),
     "validation sphere": validation_block("sphere"),
     "validation hb2": validation_block("hb2"),
     "validation horus": validation_horus,
+    "validation horus lateral": horus_lateral,
 }

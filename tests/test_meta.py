@@ -81,7 +81,7 @@ def test_data_flows_one_way():
         for other in imported(name)
         if stage(name) and stage(other) and ORDER.index(stage(other)) > ORDER.index(stage(name))
     ]
-    assert not wrong
+    assert not wrong, "\n".join(wrong)
 
 
 def test_no_import_cycles():
@@ -126,7 +126,7 @@ def public_definitions() -> Iterator[tuple[str, ast.AST]]:
 def test_modules_and_public_names_are_documented():
     silent = [name for name, tree in TREES.items() if not ast.get_docstring(tree)]
     silent += [name for name, node in public_definitions() if not ast.get_docstring(node)]
-    assert not silent
+    assert not silent, "\n".join(silent)
 
 
 # A unit, or a word that says there is none.
@@ -153,7 +153,8 @@ def test_quantities_carry_units():
     named = re.compile(r"_(m|m2|rad|deg|s|kg|Pa|K|ms|kgm2|rads|seconds)$|mach|gamma|fraction|ratio|tolerance|cfl")
     wanting = []
     for name, node in public_definitions():
-        if isinstance(node, ast.FunctionDef) and takes_quantities(node) and not is_kernel(node):
+        formats = stage(name) == "report"  # prints numbers of any unit
+        if isinstance(node, ast.FunctionDef) and takes_quantities(node) and not is_kernel(node) and not formats:
             text = ast.get_docstring(node) or ""
             floats = [
                 a.arg
@@ -162,7 +163,7 @@ def test_quantities_carry_units():
             ]
             if not UNITS.search(text) and not all(named.search(arg) for arg in floats):
                 wanting.append(name)
-    assert not wanting
+    assert not wanting, "\n".join(wanting)
 
 
 def test_shape_parameters_are_complete():

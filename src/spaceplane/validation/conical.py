@@ -87,7 +87,7 @@ def taylor_maccoll(mach: float, half_angle: float, gamma: float = 1.4) -> ConeFl
 
 
 def center_of_pressure(half_angle: float) -> float:
-    """Centre of pressure behind the apex over the length, 2 / (3 cos^2 half_angle): exact for conical flow."""
+    """Centre of pressure behind the apex over the length, 2 / (3 cos^2 half_angle) with the angle in rad: exact."""
     return 2.0 / (3.0 * math.cos(half_angle) ** 2)
 
 

@@ -65,7 +65,7 @@ def run(fine: bool, progress: Progress) -> list[Record]:
     stages = 1 + len(DEFLECTED)
     progress("clean", 0.0)
     clean = coefficients(vehicle, CLEAN, cell)
-    records = static_records(clean) + lateral_records(clean)
+    records = static_records(clean) + lateral_records(clean) + moment_center_records(clean)
     for index, configuration in enumerate(DEFLECTED):
         progress(configuration.name, (1 + index) / stages)
         records += increment_records(clean, coefficients(vehicle, configuration, cell), configuration)
@@ -130,6 +130,29 @@ def lateral_records(clean: xr.Dataset) -> list[Record]:
             )
         )
     return records
+
+
+def moment_center_records(clean: xr.Dataset) -> list[Record]:
+    """The moment centre used beside the one that fits the published C_m best; shown, not judged."""
+    station, both = fit_moment_center(clean, "x"), fit_moment_center(clean, "xz")
+    used = clean.attrs["moment_center_m"]
+    rows = (
+        ("station, height kept", station.x, used[0], station.after),
+        ("station, with the height free", both.x, used[0], both.after),
+        ("height, with the station free", both.z, used[2], both.after),
+    )
+    common = dict(case=CASE, unit="m", kind="absolute", gate=False, source=horus_tables.SOURCE)
+    common |= dict(condition="Mach 1.5 to 3, alpha 0 to 20 deg", band=0.5)
+    return [
+        Record(
+            quantity=f"moment centre, best fit of C_m: {what}",
+            published=before,
+            computed=_finite(value),
+            note=f"{what}: root-mean-square difference of C_m {station.before:.4f} as used, {after:.4f} at the fit.",
+            **common,
+        )
+        for what, value, before, after in rows
+    ]
 
 
 @dataclass(frozen=True)
