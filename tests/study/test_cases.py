@@ -1,5 +1,7 @@
 """A study file is checked before anything is computed."""
 
+from pathlib import Path
+
 import pytest
 
 from spaceplane.errors import InputError
@@ -79,3 +81,8 @@ def test_bad_parameters_are_refused(parameters, message):
 def test_values_beyond_the_limits_when_asked():
     study = load_study(parameters={"wing_width_m": (5.0,)}, allow_outside_limits=True)
     assert [one.value for one in plan(study)] == [5.0]
+
+
+def test_the_example_is_a_study():
+    study = load_study(Path(__file__).parents[2] / "examples" / "sensitivity.yaml")
+    assert len(plan(study)) == 6

@@ -1,5 +1,6 @@
 """Cases are computed once, whoever asks, and a dead worker costs one case."""
 
+import itertools
 import os
 import signal
 import sqlite3
@@ -57,6 +58,8 @@ def test_everything_is_computed_once_and_found_again(store, log, workers):
     assert [result["vehicle"]["name"] for result in first.results] == ["fake"] * 5
     assert seen[0].done == 0 and seen[0].remaining_s is None
     assert seen[-1].done == 5 and seen[-1].remaining_s == 0.0 and seen[-1].running == ()
+    assert seen[0].fraction == 0.0 and seen[-1].fraction == 1.0
+    assert all(later.fraction >= 0.95 * one.fraction for one, later in itertools.pairwise(seen))
     again = execute(cases, fake.evaluate, store, None, workers, code="a")
     assert (again.computed, again.reused) == (0, 5) and again.results == first.results
     assert set(computed(log).values()) == {1}
@@ -75,6 +78,16 @@ def test_time_left_follows_the_mean_of_what_is_done(store, log):
     execute(cases_of(4, log, sleep_s=0.1), fake.evaluate, store, seen.append, code="a")
     halfway = next(p for p in seen if p.done == 2 and not p.running)
     assert halfway.remaining_s == pytest.approx(0.2, rel=0.5)
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_long_cases_count_down(store, log, monkeypatch, workers):
+    monkeypatch.setattr("spaceplane.study.execute.REPORT_SECONDS", 0.02)
+    seen: list[Progress] = []
+    execute(cases_of(3, log, sleep_s=0.3), fake.evaluate, store, seen.append, workers, code="a")
+    during = [p for p in seen if p.done == workers and p.running]
+    assert len({round(p.fraction, 3) for p in during}) > 3
+    assert during[-1].remaining_s < during[0].remaining_s
 
 
 @pytest.mark.parametrize("workers", [1, 2])

@@ -10,6 +10,7 @@ import contextlib
 import multiprocessing
 import os
 import signal
+import threading
 import time
 import traceback
 from collections import deque
@@ -24,6 +25,7 @@ from spaceplane.study.keys import code_fingerprint, result_key
 from spaceplane.study.store import ResultStore
 
 POLL_SECONDS = 0.5
+REPORT_SECONDS = 2.0
 ATTEMPTS = 2  # a case that killed its worker this often is given up
 
 
@@ -51,6 +53,7 @@ class Progress:
         running: labels of the cases now being computed.
         elapsed_s: seconds since the study began.
         remaining_s: estimated seconds left; None before the first case has been timed.
+        fraction: of the work done, 0 to 1, the running cases' estimated share included.
     """
 
     done: int
@@ -59,6 +62,7 @@ class Progress:
     running: tuple[str, ...]
     elapsed_s: float
     remaining_s: float | None
+    fraction: float
 
 
 @dataclass(frozen=True)
@@ -108,7 +112,7 @@ def execute(
         evaluate: from a case's inputs to its result (JSON values, all finite); with several workers, a function that
             can be imported by name.
         store_path: the store's file, see `store.ResultStore`.
-        progress: called on every change.
+        progress: called on every change and every few seconds, possibly from another thread.
         workers: processes that compute at once; 1 computes in this process.
         code: fingerprint of what `evaluate` runs; the numerical packages' by default.
 
@@ -124,7 +128,8 @@ def execute(
         ledger = _Ledger(dict(zip(keys, cases, strict=True)), store, progress, workers)
         if ledger.queue:
             run = _run_here if workers == 1 else _run_in_workers
-            run(ledger, evaluate)
+            with _reporting(ledger):
+                run(ledger, evaluate)
         results = tuple(store.get(key) for key in keys)
     failures = tuple(ledger.failures.values())
     return Outcome(results, failures, ledger.computed, ledger.reused, time.monotonic() - ledger.began)
@@ -157,20 +162,25 @@ class _Ledger:
         self.report()
 
     def report(self) -> None:
-        if self.progress is not None:
-            labels = tuple(self.cases[key].label for key in self.running)
-            elapsed = time.monotonic() - self.began
-            self.progress(Progress(self.done, len(self.cases), self.reused, labels, elapsed, self.remaining()))
+        if self.progress is None:
+            return
+        labels = tuple(self.cases[key].label for key in tuple(self.running))
+        total, ended = len(self.cases), self.done + len(self.failures)
+        left = total - ended - self.begun()
+        mean = sum(self.durations) / len(self.durations) if self.durations else None
+        remaining = None if mean is None else left * mean / min(self.workers, max(total - ended, 1))
+        elapsed = time.monotonic() - self.began
+        fraction = 1.0 - left / total if total else 1.0
+        self.progress(
+            Progress(self.done, total, self.reused, labels, elapsed, 0.0 if left == 0 else remaining, fraction)
+        )
 
-    def remaining(self) -> float | None:
-        left = len(self.cases) - self.done - len(self.failures)
-        if left == 0:
-            return 0.0
+    def begun(self) -> float:
+        """How much of the running cases is done, in cases, as the time of those before them tells."""
         if not self.durations:
-            return None
+            return 0.0
         mean = sum(self.durations) / len(self.durations)
-        spent = sum(min(time.monotonic() - since, mean) for since in self.running.values())
-        return max(left * mean - spent, 0.0) / self.workers
+        return sum(min((time.monotonic() - since) / max(mean, 1e-9), 0.95) for since in tuple(self.running.values()))
 
     def start(self, key: str) -> None:
         self.running[key] = time.monotonic()
@@ -373,6 +383,24 @@ def _serve(connection: Connection, store_path: Path, evaluate: Evaluate) -> None
                 connection.send(answer)
     except (EOFError, OSError):
         return  # the parent has closed the pipe, or is gone
+
+
+@contextlib.contextmanager
+def _reporting(ledger: _Ledger) -> Iterator[None]:
+    """Report every few seconds while the body runs, so that the time left counts down within a long case."""
+    stop = threading.Event()
+
+    def repeat() -> None:
+        while not stop.wait(REPORT_SECONDS):
+            ledger.report()
+
+    thread = threading.Thread(target=repeat, daemon=True)
+    thread.start()
+    try:
+        yield
+    finally:
+        stop.set()
+        thread.join()
 
 
 @contextlib.contextmanager
