@@ -124,7 +124,7 @@ def _generate(surface: Surface, settings: MeshSettings, half: bool) -> Mesh:
     window = octree.Window(shift + np.array([0, skip, 0]), cut.cut[:, skip:])
     extent = grid.size * 2**grid.levels
     if (window.origin < 0).any() or (window.origin + window.array.shape > extent).any():
-        raise InputError(f"far_field: {settings.far_field} body lengths, the body is larger than the domain")
+        raise InputError("domain: the body is larger than the domain")
     refined = octree.refined_levels(
         window, grid.size, grid.levels, settings.wall_layers, settings.growth_layers, boxes_in_cells(settings, grid)
     )

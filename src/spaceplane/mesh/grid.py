@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from spaceplane.errors import InputError
 from spaceplane.mesh.settings import MeshSettings
 from spaceplane.mesh.symmetry import is_symmetric
 from spaceplane.vehicle.surface import Surface
@@ -51,19 +52,28 @@ def place_grid(surface: Surface, settings: MeshSettings, half: bool) -> Grid:
     length = float((high - low).max())
     levels = max(1, round(math.log2(max(length / cell, 2.0))))
     top = cell * 2**levels
-    reach = settings.far_field * length
+    # a body of a few cells still needs air around it
+    reach = max(settings.far_field * length, 8.0 * cell)
+    lower, upper = low - reach, high + reach
+    if settings.domain is not None:
+        lower, upper = np.array(settings.domain, dtype=float)
+        if (low - lower < 4.0 * cell).any() or (upper - high < 4.0 * cell).any():
+            raise InputError(
+                f"domain: {settings.domain} m, the body ({low.round(3).tolist()} to {high.round(3).tolist()} m) is "
+                "larger than the domain or within four cells of its boundary"
+            )
     size = np.zeros(3, np.int64)
     corner = np.zeros(3)
     level_faced = half and is_symmetric(surface, 2)
     for axis in range(3):
         if axis == 1 or (axis == 2 and level_faced):
-            widest = max(abs(low[axis]), abs(high[axis]))
-            size[axis] = 2 * math.ceil((widest + reach) / top)
+            size[axis] = 2 * math.ceil(max(abs(lower[axis]), abs(upper[axis])) / top)
             corner[axis] = -0.5 * size[axis] * top
         else:
             offset = settings.offset[0 if axis == 0 else 1] % 1.0
-            size[axis] = math.ceil((high[axis] - low[axis] + 2.0 * reach) / top)
-            before = math.floor((size[axis] * top - (high[axis] - low[axis])) / (2.0 * cell))
+            size[axis] = math.ceil((upper[axis] - lower[axis]) / top)
+            spare = size[axis] * top - (upper[axis] - lower[axis])
+            before = math.floor((low[axis] - lower[axis] + 0.5 * spare) / cell)
             corner[axis] = low[axis] - (before + offset) * cell
     if half:
         size[1] //= 2

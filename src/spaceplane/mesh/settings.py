@@ -31,6 +31,8 @@ class MeshSettings:
         wall_cell: edge of the cells cut by the body, m.
         target_cells: choose the wall cell so that about this many cells result (within 15 %); overrides `wall_cell`.
         far_field: distance from the body's bounding box to the far field, in body lengths (its largest extent).
+        domain: (lower corner, upper corner) of the air to mesh, m, widened to whole cells of the coarsest size; None
+            uses `far_field`.
         wall_layers: layers of wall-sized cells beside the cut cells; at least 1.
         growth_layers: layers of cells of each coarser size before the next; at least 1.
         merge_fraction: control volumes below this fraction of their cube are merged with a neighbour.
@@ -43,6 +45,7 @@ class MeshSettings:
     wall_cell: float = 0.125
     target_cells: int | None = None
     far_field: float = 6.0
+    domain: tuple[tuple[float, float, float], tuple[float, float, float]] | None = None
     wall_layers: int = 3
     growth_layers: int = 4
     merge_fraction: float = 0.3
@@ -68,6 +71,8 @@ class MeshSettings:
                 raise InputError(f"{name}: {getattr(self, name)}, must be at least 1")
         if not 0.0 <= self.merge_fraction <= 0.9:
             raise InputError(f"merge_fraction: {self.merge_fraction}, allowed 0 to 0.9")
+        if self.domain is not None and not all(low < high for low, high in zip(*self.domain, strict=True)):
+            raise InputError(f"domain: {self.domain} m, the upper corner must lie above the lower one")
         for box in self.boxes:
             if not (math.isfinite(box.cell) and box.cell > 0.0):
                 raise InputError(f"boxes: cell {box.cell} m, must be a finite length above 0")
