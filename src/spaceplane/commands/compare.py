@@ -26,8 +26,8 @@ def compare(
 ) -> int:
     """Derivatives, modes and levels of two analyses, flight point by flight point.
 
-    Without files: HORUS-2B against the thesis's optimised shape at Mach 0.8, 1.5, 2.5, 5 and 10, computed and kept in the
-    store of --out (out/compare by default).
+    Without files: HORUS-2B against the thesis's optimised shape at Mach 0.8, 1.5, 2.5, 5 and 10, computed and kept in
+    the store of --out (out/compare by default).
     """
     if (first is None) != (second is None):
         raise InputError("compare: two result.json files are needed, or none for default against optimised shape")

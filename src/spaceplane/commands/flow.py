@@ -75,16 +75,18 @@ def flow(
     writable_file(json_file, "--json")
     writable_file(vtu, "--vtu", (".vtu",))
     writable_file(vtp, "--vtp", (".vtp",))
-    from spaceplane.aero.flow_case import run_flow
     from spaceplane.flow.settings import FlowSettings
     from spaceplane.mesh.settings import MeshSettings
     from spaceplane.vehicle.properties import ReferenceLengths
-    from spaceplane.vehicle.stl import read_stl
 
     mesh = options.mesh_settings(cell, cells, replace(MeshSettings(), target_cells=200_000))
     settings = replace(FlowSettings(), precision=solver_precision)
     reference = ReferenceLengths(**lengths, moment_center=center)
+    from spaceplane.vehicle.stl import read_stl
+
     surface = read_stl(body)
+    from spaceplane.aero.flow_case import run_flow  # the numerical stack: after all that can be refused without it
+
     with progress_bar() as tell:
         case = run_flow(surface, machs, alphas, betas, reference, mesh, settings, tell)
     _write(case, surface, vtu, vtp)

@@ -1,0 +1,424 @@
+"""The command line: help, exit codes, and one-line errors for everything a user can get wrong."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from spaceplane import __version__, cli
+from spaceplane.commands.arguments import spread_assignments
+from spaceplane.errors import InputError
+
+COMMANDS = ("analyse", "geometry", "flow", "modes", "compare", "report", "validate", "export", "study sensitivity")
+FLOW = ["--area", "1", "--length", "1", "--span", "1", "--moment-center", "0,0,0"]
+
+
+def run(capfd: pytest.CaptureFixture, *arguments: object) -> tuple[int, str, str]:
+    """Exit code, standard output and standard error of one command."""
+    code = cli.run([str(a) for a in arguments])
+    out, err = capfd.readouterr()
+    return code, out, err
+
+
+def refused(capfd: pytest.CaptureFixture, *arguments: object, naming: str) -> str:
+    """Assert a one-line error that names `naming`, exit code 2 and nothing on standard output; return the line."""
+    code, out, err = run(capfd, *arguments)
+    assert code == 2, err
+    assert out == ""
+    assert err.startswith("error: ")
+    assert err.count("\n") == 1
+    assert naming in err
+    assert "Traceback" not in err
+    return err
+
+
+def tetrahedron(path: Path, faces: int = 4, scale: float = 1.0) -> Path:
+    """ASCII STL of a tetrahedron, or of some of its faces."""
+    points = [(0, 0, 0), (scale, 0, 0), (0, scale, 0), (0, 0, scale)]
+    text = "solid t\n"
+    for a, b, c in ((0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3))[:faces]:
+        text += "facet normal 0 0 0\nouter loop\n"
+        text += "".join("vertex {} {} {}\n".format(*points[k]) for k in (a, b, c))
+        text += "endloop\nendfacet\n"
+    path.write_text(text + "endsolid t\n")
+    return path
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_every_command_has_help_with_an_example(capfd, command):
+    code, out, _ = run(capfd, *command.split(), "--help")
+    assert code == 0
+    assert f"Example: spaceplane {command}" in " ".join(out.split())
+
+
+def test_version(capfd):
+    assert run(capfd, "--version")[:2] == (0, f"spaceplane {__version__}\n")
+
+
+def test_help_starts_quickly_and_loads_nothing_heavy():
+    code = (
+        "import sys; from spaceplane import cli; cli.run(['--help']); "
+        "heavy = {'numba', 'vtk', 'pyvista', 'scipy', 'xarray', 'matplotlib', 'numpy'} & set(sys.modules); "
+        "sys.exit(str(heavy) if heavy else 0)"
+    )
+    best = 9.0
+    for _ in range(4):
+        began = time.perf_counter()
+        done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+        best = min(best, time.perf_counter() - began)
+        assert done.returncode == 0, done.stderr
+    assert best < 0.5
+
+
+def test_one_option_takes_several_assignments():
+    given = ["analyse", "horus-2b", "--set", "a=1", "b=2", "--deflect", "c=-3", "--out", "d=e"]
+    assert spread_assignments(given) == [
+        "analyse", "horus-2b", "--set", "a=1", "--set", "b=2", "--deflect", "c=-3", "--out", "d=e",
+    ]  # fmt: skip
+
+
+def test_vehicle_after_the_assignments_stays_the_vehicle():
+    assert spread_assignments(["geometry", "--set", "a=1", "horus-2b"]) == ["geometry", "--set", "a=1", "horus-2b"]
+
+
+# What `analyse` and `geometry` refuse.
+
+
+def test_unknown_vehicle_names_the_nearest_preset(capfd, tmp_path):
+    assert "horus-2b" in refused(capfd, "analyse", "horus2b", "--out", tmp_path / "o", naming="horus2b")
+    assert not (tmp_path / "o").exists()
+
+
+def test_unknown_parameter_names_the_nearest(capfd, tmp_path):
+    line = refused(
+        capfd, "analyse", "horus-2b", "--set", "wing_widht_m=3", "--out", tmp_path / "o", naming="wing_widht_m"
+    )
+    assert "wing_width_m" in line
+
+
+@pytest.mark.parametrize(
+    ("text", "naming"),
+    [
+        ("wing_width_m=9", "9"),
+        ("wing_width_m=wide", "wide"),
+        ("wing_width_m", "name=value"),
+        ("wing_width_m=nan", "nan"),
+    ],
+)
+def test_bad_parameter_values(capfd, tmp_path, text, naming):
+    line = refused(capfd, "geometry", "horus-2b", "--set", text, "--out", tmp_path / "b.stl", naming="wing_width_m")
+    assert naming in line
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_value_out_of_limits_says_the_limits(capfd, tmp_path):
+    line = refused(capfd, "analyse", "horus-2b", "--set", "wing_width_m=9", "--out", tmp_path, naming="wing_width_m")
+    assert "2.8" in line and "3.9" in line
+
+
+def test_a_parameter_given_twice(capfd, tmp_path):
+    both = ["--set", "wing_width_m=3", "wing_width_m=3.2"]
+    refused(capfd, "geometry", "horus-2b", *both, "--out", tmp_path / "b.stl", naming="wing_width_m")
+
+
+@pytest.mark.parametrize("text", ["elevon_left=-50", "elevon_lef=3", "elevon_left=up", "rudder_left=-5", "elevon_left"])
+def test_bad_deflections(capfd, tmp_path, text):
+    refused(capfd, "geometry", "horus-2b", "--deflect", text, "--out", tmp_path / "b.stl", naming=text.split("=")[0])
+
+
+@pytest.mark.parametrize("text", ["", " ", "0", "-1", "abc", "nan", "inf", "0.8,,2", "0.8,1,", "0.8,0.8"])
+def test_bad_mach_numbers(capfd, tmp_path, text):
+    refused(capfd, "analyse", "horus-2b", "--mach", text, "--out", tmp_path / "o", naming="--mach")
+    assert not (tmp_path / "o").exists()
+
+
+@pytest.mark.parametrize("text", ["abc", "", "1,2", "nan"])
+def test_bad_angles_of_attack(capfd, tmp_path, text):
+    refused(capfd, "analyse", "horus-2b", "--alpha", text, "--out", tmp_path / "o", naming="--alpha")
+
+
+def test_cells_and_cell_exclude_each_other(capfd, tmp_path):
+    refused(capfd, "analyse", "horus-2b", "--cell", "0.1", "--cells", "9999", "--out", tmp_path, naming="--cells")
+
+
+@pytest.mark.parametrize("option", ["--cell", "--cells"])
+@pytest.mark.parametrize("text", ["0", "-1", "fine", "nan", ""])
+def test_bad_cell_sizes(capfd, tmp_path, option, text):
+    refused(capfd, "analyse", "horus-2b", option, text, "--out", tmp_path / "o", naming=option)
+
+
+def test_unknown_precision(capfd, tmp_path):
+    refused(capfd, "analyse", "horus-2b", "--precision", "fp16", "--out", tmp_path, naming="--precision")
+
+
+@pytest.mark.parametrize("options", [["--form", "x"], ["--class", "V"], ["--category", "D"]])
+def test_unknown_choices(capfd, tmp_path, options):
+    refused(capfd, "analyse", "horus-2b", *options, "--out", tmp_path, naming=options[1])
+
+
+@pytest.mark.parametrize(
+    ("text", "naming"),
+    [
+        ("shape: [1, 2", "vehicle.yaml"),
+        ("- a\n", "vehicle.yaml"),
+        ("shape:\n  wing_widht_m: 3\n", "wing_width_m"),
+        ("\0", "yaml"),
+    ],
+)
+def test_malformed_vehicle_file(capfd, tmp_path, text, naming):
+    path = tmp_path / "vehicle.yaml"
+    path.write_text(text)
+    refused(capfd, "geometry", path, "--out", tmp_path / "b.stl", naming=naming)
+
+
+def test_folder_as_vehicle_file(capfd, tmp_path):
+    (tmp_path / "v.yaml").mkdir()
+    refused(capfd, "geometry", tmp_path / "v.yaml", "--out", tmp_path / "b.stl", naming="v.yaml")
+
+
+def test_missing_vehicle_file(capfd, tmp_path):
+    refused(capfd, "geometry", tmp_path / "v.yaml", "--out", tmp_path / "b.stl", naming="v.yaml")
+
+
+# Places that cannot be written.
+
+
+@pytest.fixture
+def blocked(tmp_path: Path) -> Path:
+    """A path below a file, where not even root can make a folder."""
+    (tmp_path / "file").write_text("kept")
+    return tmp_path / "file" / "below"
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["analyse", "horus-2b", "--out"],
+        ["study", "sensitivity", "--out"],
+        ["validate", "cones", "--out"],
+        ["compare", "--out"],
+    ],
+)
+def test_unwritable_folder_is_refused_before_anything_is_computed(capfd, blocked, arguments):
+    began = time.perf_counter()
+    refused(capfd, *arguments, blocked, naming="--out")
+    assert time.perf_counter() - began < 10
+    assert blocked.parent.read_text() == "kept"
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason="root may write anywhere")
+def test_folder_without_permission(capfd, tmp_path):
+    tmp_path.chmod(0o500)
+    refused(capfd, "analyse", "horus-2b", "--out", tmp_path / "o", naming="--out")
+
+
+def test_file_as_output_folder(capfd, tmp_path):
+    (tmp_path / "o").write_text("kept")
+    refused(capfd, "analyse", "horus-2b", "--out", tmp_path / "o", naming="--out")
+    assert (tmp_path / "o").read_text() == "kept"
+
+
+@pytest.mark.parametrize("name", ["b.obj", "b", "b.stl.txt"])
+def test_unknown_geometry_format(capfd, tmp_path, name):
+    refused(capfd, "geometry", "horus-2b", "--out", tmp_path / name, naming=".stl")
+
+
+def test_folder_as_geometry_file(capfd, tmp_path):
+    (tmp_path / "b.stl").mkdir()
+    refused(capfd, "geometry", "horus-2b", "--out", tmp_path / "b.stl", naming="b.stl")
+
+
+@pytest.mark.parametrize(("option", "name"), [("--json", "x/y.json"), ("--vtu", "x/y.vtu"), ("--vtp", "x/y.vtp")])
+def test_unwritable_flow_output(capfd, tmp_path, option, name):
+    (tmp_path / "x").write_text("kept")
+    body = tetrahedron(tmp_path / "t.stl")
+    refused(capfd, "flow", body, "--mach", 2, *FLOW, option, tmp_path / name, naming=option)
+
+
+# What `flow` refuses.
+
+
+@pytest.mark.parametrize(
+    ("option", "text"),
+    [
+        ("--mach", ""), ("--mach", "0"), ("--mach", "-2"), ("--mach", "two"), ("--mach", "nan"), ("--mach", "1,,2"),
+        ("--alpha", "abc"), ("--alpha", ""), ("--alpha", "95"), ("--alpha", "5,5"), ("--beta", "x"), ("--area", "0"),
+        ("--area", "-1"), ("--area", "big"), ("--length", "0"), ("--span", "inf"), ("--moment-center", "0,0"),
+        ("--moment-center", "a,b,c"), ("--rates", "0,0"), ("--rates", "0,0.1,0"), ("--cell", "0"), ("--cells", "-5"),
+        ("--precision", "half"), ("--vtu", "field.txt"),
+    ],
+)  # fmt: skip
+def test_bad_flow_options(capfd, tmp_path, option, text):
+    body = tetrahedron(tmp_path / "t.stl")
+    options = {"--mach": "2", "--alpha": "0", **dict(zip(FLOW[::2], FLOW[1::2], strict=True))} | {option: text}
+    refused(capfd, "flow", body, *(x for pair in options.items() for x in pair), naming=option)
+
+
+def test_missing_flow_option(capfd, tmp_path):
+    refused(capfd, "flow", tetrahedron(tmp_path / "t.stl"), "--mach", 2, naming="--area")
+
+
+def test_blanks_in_lists_are_fine():
+    from spaceplane.commands.arguments import mach_numbers, numbers
+
+    assert mach_numbers(" 0.8, 1.5 ,2.5") == [0.8, 1.5, 2.5]
+    assert numbers("--moment-center", "1, 2, 3", count=3) == [1.0, 2.0, 3.0]
+
+
+def test_missing_body(capfd, tmp_path):
+    refused(capfd, "flow", tmp_path / "no.stl", "--mach", 2, *FLOW, naming="no.stl")
+
+
+def test_folder_as_body(capfd, tmp_path):
+    refused(capfd, "flow", tmp_path, "--mach", 2, *FLOW, naming=str(tmp_path))
+
+
+def test_empty_body(capfd, tmp_path):
+    (tmp_path / "empty.stl").write_bytes(b"")
+    refused(capfd, "flow", tmp_path / "empty.stl", "--mach", 2, *FLOW, naming="empty.stl")
+
+
+def test_body_without_triangles(capfd, tmp_path):
+    (tmp_path / "none.stl").write_text("solid none\nendsolid none\n")
+    refused(capfd, "flow", tmp_path / "none.stl", "--mach", 2, *FLOW, naming="none.stl")
+
+
+def test_garbage_as_body(capfd, tmp_path):
+    (tmp_path / "noise.stl").write_bytes(bytes(range(256)) * 5)
+    refused(capfd, "flow", tmp_path / "noise.stl", "--mach", 2, *FLOW, naming="noise.stl")
+
+
+def test_open_body(capfd, tmp_path):
+    body = tetrahedron(tmp_path / "open.stl", faces=3)
+    assert "watertight" in refused(capfd, "flow", body, "--mach", 2, *FLOW, naming="open.stl")
+
+
+def test_failed_run_leaves_earlier_output_alone(capfd, tmp_path):
+    kept = tmp_path / "kept.json"
+    kept.write_text("[]")
+    refused(capfd, "flow", tetrahedron(tmp_path / "o.stl", 3), "--mach", 2, *FLOW, "--json", kept, naming="o.stl")
+    assert kept.read_text() == "[]"
+
+
+# What `modes`, `report`, `compare`, `export`, `validate` and `study` refuse.
+
+
+@pytest.mark.parametrize("text", ["[flight\nmach=2", "", "[flight]\nmach = 2.5\n", "\x00"])
+def test_malformed_derivatives(capfd, tmp_path, text):
+    path = tmp_path / "d.toml"
+    path.write_text(text)
+    refused(capfd, "modes", path, naming="d.toml" if not text.startswith("[flight]") else "altitude")
+
+
+def test_missing_derivatives(capfd, tmp_path):
+    refused(capfd, "modes", tmp_path / "d.toml", naming="d.toml")
+    refused(capfd, "modes", tmp_path, naming=str(tmp_path))
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["", "{", "[]", "{}", '{"schema": "other"}', '{"schema": "spaceplane.result", "schema_version": 99}', "\x00"],
+)
+def test_damaged_result(capfd, tmp_path, text):
+    (tmp_path / "result.json").write_text(text)
+    refused(capfd, "report", tmp_path, naming="result.json")
+    refused(capfd, "export", "csv", tmp_path, naming="result.json")
+    refused(capfd, "compare", tmp_path / "result.json", tmp_path / "result.json", naming="result.json")
+    assert (tmp_path / "result.json").read_text() == text
+    assert not (tmp_path / "report.html").exists()
+
+
+def test_missing_result(capfd, tmp_path):
+    refused(capfd, "report", tmp_path / "none", naming="none")
+    refused(capfd, "report", tmp_path, naming="result.json")
+
+
+def test_unknown_export_format(capfd, tmp_path):
+    refused(capfd, "export", "xlsx", tmp_path, naming="xlsx")
+
+
+def test_compare_needs_two(capfd, tmp_path):
+    refused(capfd, "compare", tmp_path / "a.json", naming="two")
+
+
+def test_unknown_validation_case(capfd):
+    assert "cones" in refused(capfd, "validate", "cone", naming="cone")
+
+
+@pytest.mark.parametrize("text", ["parameters: [", "parametres: {}\n", "mach: [0]\n", "mach: abc\n", "- 1\n"])
+def test_malformed_study(capfd, tmp_path, text):
+    (tmp_path / "s.yaml").write_text(text)
+    refused(capfd, "study", "sensitivity", tmp_path / "s.yaml", "--out", tmp_path / "o", naming="s.yaml")
+
+
+def test_damaged_store_is_named_and_kept(capfd, tmp_path):
+    store = tmp_path / "store.sqlite"
+    store.write_bytes(b"this is no database" * 300)
+    before = store.read_bytes()
+    line = refused(capfd, "study", "sensitivity", "--out", tmp_path / "o", "--store", store, naming="store.sqlite")
+    assert "damaged" in line or "not a" in line
+    assert store.read_bytes() == before
+
+
+@pytest.mark.parametrize("text", ["0", "-1", "many"])
+def test_bad_number_of_workers(capfd, tmp_path, text):
+    refused(capfd, "study", "sensitivity", "--workers", text, "--out", tmp_path, naming="--workers")
+
+
+def test_unknown_command_and_option(capfd):
+    refused(capfd, "analyze", "horus-2b", naming="analyze")
+    refused(capfd, "report", "--nonsense", naming="--nonsense")
+
+
+# What happens inside.
+
+
+def test_interrupt_is_one_line_and_130(capfd, monkeypatch):
+    def interrupted(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("spaceplane.report.read.read_result", interrupted)
+    code, _, err = run(capfd, "report", "x")
+    assert (code, err) == (130, "error: interrupted\n")
+
+
+def test_full_disk_is_one_line_and_2(capfd, monkeypatch):
+    def full(*_):
+        raise OSError(28, "No space left on device", "result.json")
+
+    monkeypatch.setattr("spaceplane.report.read.read_result", full)
+    code, _, err = run(capfd, "report", "x")
+    assert (code, err) == (2, "error: result.json: No space left on device\n")
+
+
+def test_error_messages_stay_on_one_line(capfd, monkeypatch):
+    def broken(*_):
+        raise InputError("first\nsecond")
+
+    monkeypatch.setattr("spaceplane.report.read.read_result", broken)
+    assert refused(capfd, "report", "x", naming="first second")
+
+
+def test_modes_writes_json(capfd, tmp_path):
+    path = tmp_path / "d.toml"
+    path.write_text(
+        "[flight]\nmach = 2.5\naltitude_m = 26700\nalpha_deg = 16.6\ngamma_deg = -8.4\nbank_deg = 55\nCL = 0.36\n"
+        "CD = 0.2\n"
+        "[vehicle]\nmass_kg = 26000.0\nIxx_kgm2 = 119000.0\nIyy_kgm2 = 769000.0\nIzz_kgm2 = 806000.0\narea_m2 = 110.0\n"
+        "c_ref_m = 23.0\nb_ref_m = 13.0\n"
+        '[derivatives]\nunit = "per_degree"\nCD_alpha = 0.0179\nCL_alpha = 0.0323\nCm_alpha = 0.00071\n'
+        "CY_beta = -0.01725\nCl_beta = -0.00139\nCn_beta = -0.00048\nCD_M = -0.0415\nCL_M = -0.0965\nCm_M = 0.01195\n"
+    )
+    code, out, err = run(capfd, "modes", path, "--json", tmp_path / "m.json")
+    assert (code, err) == (0, "")
+    assert "MIL-F-8785C" in out
+    record = json.loads((tmp_path / "m.json").read_text())
+    assert len(record["eigenvalues"]) == 9
+    code, out, _ = run(capfd, "modes", path, "--json", "-")
+    assert json.loads(out)["modes"] == record["modes"]
