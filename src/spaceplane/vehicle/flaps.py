@@ -18,6 +18,8 @@ KNUCKLE_RATIO = 0.95  # knuckle radius over the local half-thickness
 SIDE_OVERLAP = 0.008  # m
 OPEN_END = 0.4  # m, by which an open bay is cut beyond the flap's end
 EDGE_SETBACK = 0.004  # m, flap's trailing edge ahead of the wing's, so that no faces coincide
+BODY_FLAP_RADIUS = 0.16  # m, height of the body flap's axis above the underside at its ends
+KEEL_STEP = 0.015  # m, body flap's lower skin above the underside
 CORNER_GAP = 0.15  # m, elevon's outboard end inboard of the bend
 
 
@@ -32,7 +34,7 @@ class Hinge:
         up: [xyz] unit normal of the flap, away from the side a positive deflection goes to.
         length: of the axis, m.
         chord: from axis to trailing edge, m.
-        radius: knuckle radius at both ends, m.
+        radius: knuckle radius at stations evenly spaced along the axis, m.
         edge: half-thickness of the trailing edge, m.
         skew: shift of both ends along the axis per metre behind it.
         open_end: the bay runs out of the wing at the far end.
@@ -44,7 +46,7 @@ class Hinge:
     up: np.ndarray
     length: float
     chord: float
-    radius: tuple[float, float]
+    radius: tuple[float, ...]
     edge: float
     skew: tuple[float, float] = (0.0, 0.0)
     open_end: bool = False
@@ -64,7 +66,7 @@ def flap_shell(hinge: Hinge, deflection: float, spacing: float) -> Shell:
     """
     across = max(3, int(np.ceil(hinge.length / (1.3 * spacing))))
     u = np.linspace(0, 1, across + 1)
-    radius = hinge.radius[0] + (hinge.radius[1] - hinge.radius[0]) * u
+    radius = np.interp(u, np.linspace(0, 1, len(hinge.radius)), hinge.radius)
     # The upper tangent from the edge point (chord, edge) to the knuckle leaves it at this angle from `aft`.
     lean = np.arctan2(hinge.edge, hinge.chord)
     touch = lean + np.arccos(radius / np.hypot(hinge.chord, hinge.edge))
@@ -167,14 +169,22 @@ def rudder_hinge(layout: Layout) -> Hinge:
 
 
 def body_flap_hinge(layout: Layout) -> Hinge:
-    """Body flap below the base; its knuckle is sunk into the base."""
+    """Body flap below the base; its knuckle is sunk into the base and follows the curved underside."""
     s = layout.shape
-    half_width, radius = 0.5 * s.body_flap_width_m, 0.16
+    half_width = 0.5 * s.body_flap_width_m
     if half_width > layout.chine - 0.295:
         raise GeometryError(f"body_flap_width_m = {s.body_flap_width_m:g} m: wider than the fuselage's underside")
-    x = layout.x_base + 0.3 * radius
-    z = layout.z_keel + float(layout.underside(half_width)) + radius + 0.02
+    axis = float(layout.underside(half_width)) + BODY_FLAP_RADIUS
+    y = np.linspace(-half_width, half_width, 41)
+    radius = axis - layout.underside(y) - KEEL_STEP
+    ahead = 0.3 * BODY_FLAP_RADIUS  # of the axis, the base
     return Hinge(
-        np.array([x, -half_width, z]), np.array([0.0, 1.0, 0.0]), np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0]),
-        2 * half_width, s.body_flap_length_m - 0.3 * radius, (radius, radius), 0.5 * s.trailing_edge_thickness_m,
-    )  # fmt: skip
+        np.array([layout.x_base + ahead, -half_width, layout.z_keel + axis]),
+        np.array([0.0, 1.0, 0.0]),
+        np.array([1.0, 0.0, 0.0]),
+        np.array([0.0, 0.0, 1.0]),
+        2 * half_width,
+        s.body_flap_length_m - ahead,
+        tuple(float(r) for r in radius),
+        0.5 * s.trailing_edge_thickness_m,
+    )

@@ -115,7 +115,8 @@ def _section_directions(layout: Layout, q: np.ndarray) -> np.ndarray:
     not fold over the stub inside the fuselage; the vector is longer by as much as it is oblique, which keeps the upper skin.
     """
     elevation = layout.path(np.maximum(q, 1e-9))[2]
-    ramp = 0.3 + layout.shape.wing_root_thickness_m * np.sin(layout.dihedral)
+    ramp = 0.3 + 2.5 * layout.shape.wing_root_thickness_m * np.tan(layout.dihedral)
+    ramp = min(ramp, 0.9 * (layout.panel_length - layout.bend_tangent))
     t = np.clip(q / ramp, 0.0, 1.0)
     angle = elevation * t**2 * (3 - 2 * t)
     length = 1.0 / np.cos(elevation - angle)
