@@ -93,5 +93,5 @@ def _colour(seen: np.ndarray, values: np.ndarray, limits: tuple[float, float], s
     covered = np.maximum(blocks[..., 3:] / 255.0, 1e-9)
     blocks[..., :3] = np.minimum(blocks[..., :3] / covered, 255.0)
     buffer = io.BytesIO()
-    Image.fromarray(np.round(blocks).astype(np.uint8), "RGBA").save(buffer, "PNG", optimize=True)
+    Image.fromarray(np.round(blocks).astype(np.uint8), "RGBA").save(buffer, "PNG")
     return buffer.getvalue()

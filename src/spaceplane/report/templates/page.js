@@ -13,6 +13,7 @@
   choose(0);
   const tip = document.getElementById("tip");
   function place(event) {
+    if (event.target.nodeName === "CANVAS") return; // the viewer has its own
     const mark = event.target.closest && event.target.closest("[data-tip]");
     tip.hidden = !mark;
     if (!mark) return;

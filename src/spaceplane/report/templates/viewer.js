@@ -32,10 +32,15 @@
   const FRAGMENT = `#version 300 es
     precision highp float;
     in vec3 n; in float cp; flat in int part;
-    uniform sampler2D ramp; uniform vec3 colours[16]; uniform float low, high, interval; uniform int mode, lines;
+    uniform sampler2D ramp; uniform vec3 colours[16]; uniform float low, high, interval, least, most; uniform int mode, lines;
     out vec4 colour;
     void main() {
       vec3 unit = normalize(n);
+      if (mode == 2) { // what lies under the pointer: the field's value in 16 bits and the part
+        float steps = floor(clamp((cp - least) / max(most - least, 1e-12), 0.0, 1.0) * 65535.0 + 0.5);
+        colour = vec4(floor(steps / 256.0) / 255.0, mod(steps, 256.0) / 255.0, float(part) / 255.0, 1.0);
+        return;
+      }
       vec3 base;
       if (mode == 1) base = colours[part];
       else base = texture(ramp, vec2(clamp((cp - low) / (high - low), 0.0, 1.0) * 0.996 + 0.002, 0.5)).rgb;
@@ -157,6 +162,51 @@
     gl.drawElements(gl.TRIANGLES, triangles.length, gl.UNSIGNED_INT, 0);
     compass(rows);
   }
+  const probe = { frame: gl.createFramebuffer(), colour: gl.createRenderbuffer(), depth: gl.createRenderbuffer(), size: "" };
+  function under(clientX, clientY) { // {cp, part} on the surface at a place of the window, or null
+    const box = canvas.getBoundingClientRect();
+    const x = Math.floor(((clientX - box.left) / box.width) * canvas.width);
+    const y = canvas.height - 1 - Math.floor(((clientY - box.top) / box.height) * canvas.height);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, probe.frame);
+    if (probe.size !== `${canvas.width} ${canvas.height}`) {
+      const attach = [[probe.colour, gl.RGBA8, gl.COLOR_ATTACHMENT0], [probe.depth, gl.DEPTH_COMPONENT16, gl.DEPTH_ATTACHMENT]];
+      for (const [buffer, format, place] of attach) {
+        gl.bindRenderbuffer(gl.RENDERBUFFER, buffer);
+        gl.renderbufferStorage(gl.RENDERBUFFER, format, canvas.width, canvas.height);
+        gl.framebufferRenderbuffer(gl.FRAMEBUFFER, place, gl.RENDERBUFFER, buffer);
+      }
+      probe.size = `${canvas.width} ${canvas.height}`;
+    }
+    gl.enable(gl.SCISSOR_TEST);
+    gl.scissor(x, y, 1, 1);
+    gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+    gl.uniform1i(at("mode"), 2);
+    gl.drawElements(gl.TRIANGLES, triangles.length, gl.UNSIGNED_INT, 0);
+    const pixel = new Uint8Array(4);
+    gl.readPixels(x, y, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
+    gl.disable(gl.SCISSOR_TEST);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+    if (!pixel[3]) return null;
+    const field = data.fields[state.field], part = data.parts[pixel[2]];
+    const cp = field ? field.least + ((field.most - field.least) * (256 * pixel[0] + pixel[1])) / 65535 : null;
+    return { cp, part: part ? part.name.replaceAll("_", " ") : "" };
+  }
+  const tip = document.getElementById("tip");
+  let asked = null;
+  function hover(event) {
+    if (asked) { asked = event; return; }
+    asked = event;
+    requestAnimationFrame(() => {
+      const found = held.size ? null : under(asked.clientX, asked.clientY);
+      tip.hidden = !found;
+      if (found) {
+        tip.textContent = (found.cp === null ? "" : `Cp ${found.cp.toFixed(3).replace("-", "−")} · `) + found.part;
+        tip.style.left = `${asked.clientX + scrollX + 16}px`;
+        tip.style.top = `${asked.clientY + scrollY + 14}px`;
+      }
+      asked = null;
+    });
+  }
   function redraw() {
     if (!waiting) { waiting = true; requestAnimationFrame(draw); }
   }
@@ -198,7 +248,10 @@
   });
   canvas.addEventListener("pointermove", (event) => {
     const last = held.get(event.pointerId);
-    if (!last) return;
+    if (!last) {
+      hover(event);
+      return;
+    }
     const dx = event.clientX - last[0], dy = event.clientY - last[1];
     held.set(event.pointerId, [event.clientX, event.clientY]);
     if (event.shiftKey || event.buttons === 2 || held.size > 1) {
@@ -211,6 +264,7 @@
     held.delete(event.pointerId);
     canvas.classList.remove("held");
   });
+  canvas.addEventListener("pointerleave", () => { tip.hidden = true; });
   canvas.addEventListener("contextmenu", (event) => event.preventDefault());
   canvas.addEventListener("wheel", (event) => {
     if (!event.ctrlKey && document.activeElement !== canvas) return; // the page keeps scrolling until the view is clicked
@@ -263,7 +317,7 @@
   document.addEventListener("flightpoint", (event) => show(event.detail.name));
   new ResizeObserver(redraw).observe(canvas);
   window.addEventListener("beforeprint", draw);
-  window.spaceplaneView = { state, turn, zoom, view, show, colourBy, draw };
+  window.spaceplaneView = { state, turn, zoom, view, show, colourBy, draw, under };
   root.classList.add("live");
   const active = document.querySelector("[data-point][aria-pressed=true]");
   show(active ? active.dataset.name : "");
