@@ -1,0 +1,123 @@
+"""The TOML file of `spaceplane modes`: what it gives and how it refuses."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from spaceplane.dynamics import derivatives_file
+from spaceplane.dynamics.linearise import linearise
+from spaceplane.errors import InputError
+from spaceplane.qualities import analyse_modes
+
+from . import horus
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+EXAMPLE = EXAMPLES / "horus_2b_taem.toml"
+
+
+def written(tmp_path, old="", new="", extra=""):
+    """The example with one text replaced and one added."""
+    text = EXAMPLE.read_text(encoding="utf-8")
+    assert old in text
+    path = tmp_path / "case.toml"
+    path.write_text(text.replace(old, new) + extra, encoding="utf-8")
+    return path
+
+
+def test_example_is_the_thesis_point():
+    case = derivatives_file.read(EXAMPLE)
+    system = linearise(case.point, case.mass, case.reference, case.derivatives, case.form)
+    expected = linearise(horus.point(), horus.MASS, horus.REFERENCE, horus.derivatives())
+    assert np.allclose(system.A, expected.A, rtol=1e-12)
+    assert case.form == "rigid-body"
+
+
+@pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.toml")), ids=lambda p: p.stem)
+def test_every_example_runs(path):
+    record = analyse_modes(derivatives_file.read(path))
+    assert json.loads(json.dumps(record, allow_nan=False))["schema"] == "spaceplane.modes"
+    assert len(record["eigenvalues"]) == 9
+    assert sum(2 if m["oscillatory"] else 1 for m in record["modes"]) == 9
+    assert record["verdicts"]
+
+
+def test_boeing_747_example_flies_textbook_modes():
+    record = analyse_modes(derivatives_file.read(EXAMPLES / "boeing747_cruise.toml"))
+    by_kind = {m["kind"]: m for m in record["modes"]}
+    assert {"short_period", "phugoid", "dutch_roll", "roll", "spiral"} <= set(by_kind)
+    assert by_kind["short_period"]["eigenvalue"] == pytest.approx([-0.372, 0.887], abs=4e-3)
+    assert by_kind["phugoid"]["eigenvalue"] == pytest.approx([-0.0033, 0.067], abs=1e-3)
+
+
+def test_per_degree_and_per_radian_agree(tmp_path):
+    """Only angle derivatives are converted: not those with the Mach number, nor those with rates."""
+    factor = 180 / np.pi
+    per_degree = written(tmp_path, "Cm_M = 0.01195", "Cm_M = 0.01195\nCm_q = -1.5\nCm_elevator = -0.003")
+    a = derivatives_file.read(per_degree).derivatives
+    assert a.Cm_alpha == pytest.approx(0.00071 * factor)
+    assert a.controls["Cm_elevator"] == pytest.approx(-0.003 * factor)
+    assert (a.CD_M, a.Cm_q) == (-0.0415, -1.5)
+    per_radian = written(tmp_path, '"per_degree"', '"per_radian"')
+    assert derivatives_file.read(per_radian).derivatives.Cm_alpha == 0.00071
+
+
+def test_pressure_and_temperature_replace_the_standard(tmp_path):
+    path = written(tmp_path, "CD = 0.20", "CD = 0.20\npressure_Pa = 2511.02\ntemperature_K = 221.65")
+    case = derivatives_file.read(path)
+    assert case.point.dynamic_pressure == pytest.approx(0.7 * 2511.02 * 2.5**2)
+    assert case.point.altitude == 26_700.0
+
+
+def test_model_keys_act(tmp_path):
+    plain = analyse_modes(derivatives_file.read(EXAMPLE))
+    for line in ("density_gradient = false", "gyroscopic = false"):
+        changed = analyse_modes(derivatives_file.read(written(tmp_path, extra=line)))
+        assert changed["eigenvalues"] != plain["eigenvalues"]
+    thesis = analyse_modes(derivatives_file.read(written(tmp_path, '"rigid-body"', '"thesis"')))
+    assert thesis["form"] == "thesis"
+    category = analyse_modes(derivatives_file.read(written(tmp_path, extra='category = "C"\nvehicle_class = "IV"')))
+    assert category["verdicts"][0]["category"] == "C" and category["verdicts"][0]["vehicle_class"] == "IV"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("Cm_alpha = 0.00071", "Cm_alfa = 0.00071", "Cm_alfa: unknown; did you mean Cm_alpha"),
+        ("Cm_alpha = 0.00071", "", "Cm_alpha: missing"),
+        ("mass_kg", "mass", "mass: unknown; did you mean mass_kg"),
+        ("[vehicle]", "[vehicel]", "vehicel.*did you mean vehicle"),
+        ("mach = 2.5", "mach = 0.0", "mach = 0"),
+        ("mach = 2.5", "mach = -1.0", "mach = -1"),
+        ("mach = 2.5", "mach = nan", "mach = nan: must be a finite number"),
+        ("mach = 2.5", 'mach = "fast"', "mach = 'fast': must be a finite number"),
+        ("mach = 2.5", "mach = true", "mach = True: must be a finite number"),
+        ("mass_kg = 26000.0", "mass_kg = 0", "mass_kg = 0: must be above 0"),
+        ("Iyy_kgm2 = 769000.0", "Iyy_kgm2 = -1", "Iyy_kgm2 = -1: must be above 0"),
+        ("altitude_m = 26700.0", "altitude_m = 90000", "altitude_m = 90000"),
+        ("CL = 0.36", "CL = inf", "CL = inf"),
+        ('unit = "per_degree"', 'unit = "degrees"', "unit = 'degrees'.*per_degree, per_radian"),
+        ('unit = "per_degree"', "", "unit: missing"),
+        ('form = "rigid-body"', 'form = "appendix"', "form = 'appendix'"),
+        ('form = "rigid-body"', "gyroscopic = 1", "gyroscopic = 1: must be true or false"),
+        ("gamma_deg = -8.4", "gamma_deg = -90", "gamma_deg = -90"),
+        ("[vehicle]", "[vehicle", "not a TOML file"),
+    ],
+)
+def test_refuses(tmp_path, old, new, message):
+    with pytest.raises(InputError, match=message) as caught:
+        derivatives_file.read(written(tmp_path, old, new))
+    assert "\n" not in str(caught.value)
+
+
+def test_unknown_class_is_refused(tmp_path):
+    with pytest.raises(InputError, match="vehicle_class"):
+        analyse_modes(derivatives_file.read(written(tmp_path, extra='vehicle_class = "V"')))
+
+
+def test_missing_file(tmp_path):
+    with pytest.raises(InputError, match="cannot be read"):
+        derivatives_file.read(tmp_path / "none.toml")
+    with pytest.raises(InputError, match="cannot be read"):
+        derivatives_file.read(tmp_path)

@@ -1,0 +1,83 @@
+"""Flight points, the schedule of the descent, equilibrium glide, and the axes."""
+
+import math
+
+import numpy as np
+import pytest
+
+from spaceplane.dynamics import frames
+from spaceplane.dynamics.flightpoint import (
+    glide_alpha,
+    glide_lift_coefficient,
+    scheduled_alpha_deg,
+    taem_point,
+    taem_points,
+    trajectory_altitude,
+)
+from spaceplane.errors import InputError
+
+from . import horus
+
+
+def test_taem_points():
+    points = taem_points()
+    assert [p.mach for p in points] == [0.8, 1.5, 2.5]
+    assert [p.altitude for p in points] == [13_000.0, 20_000.0, 25_000.0]
+    assert math.degrees(points[2].alpha) == pytest.approx(16.6)
+    assert "thesis" in points[2].alpha_source and "schedule" in points[0].alpha_source
+    # the thesis prints the standard atmosphere of geopotential altitudes: 1.5 % less pressure at 25 km
+    assert points[2].ambient.pressure == pytest.approx(2511.02, rel=0.016)
+
+
+def test_schedule_rises_with_mach():
+    machs = np.linspace(0.8, 25.0, 50)
+    alphas = [scheduled_alpha_deg(m) for m in machs]
+    assert np.all(np.diff(alphas) >= 0)
+    assert trajectory_altitude(10.0) == 53_000.0
+    assert taem_point(5.0, alpha_deg=10.0).alpha_source == "given"
+    with pytest.raises(InputError, match="mach"):
+        taem_point(0.3)
+    assert taem_point(0.3, altitude_m=2_000.0, alpha_deg=8.0).mach == 0.3
+
+
+def test_equilibrium_glide():
+    """The thesis's own point glides in equilibrium: CL 0.36 at 25 km, bank 55 deg."""
+    point = taem_point(2.5)
+    assert glide_lift_coefficient(point, 26_000.0, 110.0) == pytest.approx(0.36, rel=0.03)
+    alpha = glide_alpha(point, 26_000.0, 110.0, lambda a: -0.04 + 1.6 * a)
+    assert -0.04 + 1.6 * alpha == pytest.approx(glide_lift_coefficient(point, 26_000.0, 110.0), rel=1e-9)
+    steady = point.with_coefficients(glide_lift_coefficient(point, 26_000.0, 110.0), 0.2)
+    from spaceplane.dynamics.equations import flight_model, state_rates
+
+    model = flight_model(steady, horus.MASS, horus.REFERENCE, horus.derivatives())
+    assert state_rates(model.reference_state(), np.zeros(3), model)[1] == pytest.approx(0.0, abs=1e-15)
+    with pytest.raises(InputError, match="equilibrium glide"):
+        glide_alpha(point, 26_000.0, 110.0, lambda a: 0.01 * a)
+
+
+def test_body_to_wind():
+    """The velocity lies along wind x; lift along -z stays in the plane of symmetry."""
+    alpha, beta = 0.3, -0.2
+    velocity = np.array([math.cos(alpha) * math.cos(beta), math.sin(beta), math.sin(alpha) * math.cos(beta)])
+    turn = frames.body_to_wind(alpha, beta)
+    assert turn @ velocity == pytest.approx([1.0, 0.0, 0.0], abs=1e-15)
+    assert turn @ turn.T == pytest.approx(np.eye(3), abs=1e-15)
+    assert (turn.T @ np.array([0.0, 0.0, 1.0]))[1] == pytest.approx(0.0, abs=1e-15)
+
+
+def test_bank_turns_lift_to_the_right():
+    """Right wing down: lift (wind -z) gets a component along trajectory +y."""
+    lift = frames.wind_to_trajectory(0.5) @ np.array([0.0, 0.0, -1.0])
+    assert lift == pytest.approx([0.0, math.sin(0.5), -math.cos(0.5)])
+
+
+def test_axial_and_normal_force():
+    CD, CL = frames.axial_normal_to_drag_lift(0.1, 0.5, 0.3)
+    assert frames.drag_lift_to_axial_normal(CD, CL, 0.3) == pytest.approx((0.1, 0.5))
+    # the same through the wind axes: aft and up are -x and -z of the body
+    force = frames.body_to_wind(0.3, 0.0) @ np.array([-0.1, 0.0, -0.5])
+    assert (-force[0], -force[2]) == pytest.approx((CD, CL))
+
+
+def test_geometry_to_body():
+    assert frames.geometry_to_body([1.0, 2.0, 3.0]) == pytest.approx([-1.0, 2.0, -3.0])
