@@ -111,6 +111,12 @@ class AnalyseSettings:
         """
         values = dict(values)
         deflections = values.pop("deflections", None)
+        mesh = values.get("mesh")
+        if isinstance(mesh, Mapping) and "wall_cell" in mesh:
+            values["mesh"] = {
+                "target_cells": None,
+                **mesh,
+            }  # a wall cell that is asked for is not for the target to move
         settings = _override(cls(), values, "")
         if deflections is None:
             return settings
@@ -147,7 +153,8 @@ class AnalyseSettings:
 
 def _override(settings: Any, values: Mapping, where: str) -> Any:
     """A copy of a settings record with plain values written over its fields."""
-    names = [f.name for f in fields(settings)]
+    types = {f.name: str(f.type) for f in fields(settings)}
+    names = tuple(types)
     changes = {}
     for key, value in values.items():
         name, angle = str(key), False
@@ -161,7 +168,7 @@ def _override(settings: Any, values: Mapping, where: str) -> Any:
                 raise InputError(f"{where}{name} = {value!r}: fields by name are needed")
             changes[name] = _override(old, value, f"{where}{name}.")
         else:
-            value = _checked(f"{where}{key}", value, old)
+            value = None if value is None and "None" in types[name] else _checked(f"{where}{key}", value, old)
             changes[name] = math.radians(value) if angle else value
     return replace(settings, **changes)
 
@@ -178,7 +185,7 @@ def _checked(name: str, value: Any, default: Any) -> Any:
     if isinstance(default, bool | str):
         fits = isinstance(value, type(default))
     elif default is None:
-        fits = value is None or isinstance(value, int | float)
+        fits = isinstance(value, int | float)
     else:
         fits = isinstance(value, int | float) and not isinstance(value, bool) and not isinstance(default, tuple)
     if not fits:
@@ -271,7 +278,8 @@ def analyse(vehicle: Vehicle, settings: AnalyseSettings | None = None, progress:
     derivatives = differentiate(coefficients, plan_)
     runs: tuple[ControlRun, ...] = ()
     if settings.controls:
-        runs = _control_runs(vehicle, settings, plan_, say)
+        wall_cell = float(body.solution.mesh.record["wall_cell_m"])
+        runs = _control_runs(vehicle, settings, plan_, wall_cell, say)
         slopes = slopes_of(base, runs, is_symmetric(settings.deflections))
         derivatives = xr.merge([derivatives, slopes], join="exact")
     say("flight dynamics", 0, 1, "")
@@ -294,9 +302,9 @@ def analyse(vehicle: Vehicle, settings: AnalyseSettings | None = None, progress:
 
 
 def _control_runs(
-    vehicle: Vehicle, settings: AnalyseSettings, plan_: ConditionPlan, say: Progress
+    vehicle: Vehicle, settings: AnalyseSettings, plan_: ConditionPlan, wall_cell: float, say: Progress
 ) -> tuple[ControlRun, ...]:
-    """The base conditions on bodies with one surface moved."""
+    """The base conditions on bodies with one surface moved, on the wall cell, m, of the base mesh."""
     rows = np.array([p.base for p in plan_.points])
     c = plan_.conditions
     return control_runs(
@@ -304,7 +312,7 @@ def _control_runs(
         settings.deflections,
         settings.control_step,
         FlowConditions(c.mach[rows], c.alpha[rows], c.beta[rows], c.gamma),
-        settings.mesh,
+        replace(settings.mesh, wall_cell=wall_cell, target_cells=None),
         settings.flow,
         settings.steps.two_step_sizes,
         say,

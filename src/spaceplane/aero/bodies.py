@@ -65,8 +65,12 @@ class ControlRun:
 
     @property
     def label(self) -> str:
-        """Surface and step, such as elevon_left+5 deg."""
-        return f"{self.surface}{math.degrees(self.step):+.3g} deg"
+        """Surface and step, such as elevon_left +5 deg."""
+        return _label(self.surface, self.step)
+
+
+def _label(surface: str, step: float) -> str:
+    return f"{surface} {math.degrees(step):+.3g} deg"
 
 
 def is_symmetric(deflections: ControlDeflections) -> bool:
@@ -126,8 +130,8 @@ def control_runs(
         full = step if start + step <= upper + 1e-12 else -step
         for size in (full, 0.5 * full) if two_step_sizes else (full,):
             moved = replace(deflections, **{surface: start + size})
-            name = f"{surface} {math.degrees(size):+g} deg"
-            body = solve_vehicle(vehicle, moved, conditions, mesh_settings, flow_settings, progress, name)
+            label = _label(surface, size)
+            body = solve_vehicle(vehicle, moved, conditions, mesh_settings, flow_settings, progress, label)
             solution = body.solution
             runs.append(
                 ControlRun(

@@ -1,0 +1,235 @@
+"""The composition on the real vehicle, mesh, dynamics and report, with an impact method in place of the flow solver."""
+
+import json
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import pyvista
+
+from spaceplane import pipeline
+from spaceplane.aero import bodies
+from spaceplane.aero.database import AeroDatabase
+from spaceplane.errors import InputError
+from spaceplane.flow.freestream import direction
+from spaceplane.flow.solution import ConvergenceRecord, Solution
+from spaceplane.mesh.settings import MeshSettings
+from spaceplane.pipeline import AnalyseSettings, analyse
+from spaceplane.vehicle.controls import CONTROLS, ControlDeflections
+from spaceplane.vehicle.presets import horus_2b
+
+SETTINGS = AnalyseSettings(mach=(1.5, 2.5), mesh=MeshSettings(wall_cell=0.6, far_field=1.0))
+
+
+def newtonian(failing=()):
+    """A stand-in for `solve`: Cp = 2 cos^2 on wall that the wind sees, 0 elsewhere; `failing` conditions fail."""
+
+    def solve(mesh, conditions, settings=None, progress=None):
+        wind = direction(conditions.alpha, conditions.beta)
+        normal = mesh.wall_area / np.linalg.norm(mesh.wall_area, axis=1)[:, None]
+        cp = 2.0 * np.clip(normal @ wind.T, 0.0, 1.0) ** 2 + 0.01 * conditions.mach
+        pressure = 1.0 / conditions.gamma + cp * 0.5 * conditions.mach**2
+        records = []
+        for i in range(len(conditions)):
+            verdict = "failed" if i in failing else "converged"
+            history = np.zeros((12, 3))
+            reason = "made to fail" if i in failing else ""
+            records.append(ConvergenceRecord(verdict, 3.0, 12, np.zeros(12), history, history[0], history[0], reason))
+        state = np.ones((mesh.cells, 5, len(conditions)), np.float32)
+        statistics = {"seconds": 0.1, "precision": "single"}
+        return Solution(mesh, conditions, state, pressure, tuple(records), statistics)
+
+    return solve
+
+
+@pytest.fixture(scope="module")
+def analysis():
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(bodies, "solve", newtonian())
+        heard = []
+        found = analyse(horus_2b(), SETTINGS, lambda *told: heard.append(told))
+    assert {told[0] for told in heard} >= {"base: mesh", "elevon_left +5 deg: mesh", "flight dynamics"}
+    return found
+
+
+@pytest.fixture(scope="module")
+def written(analysis, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("out")
+    return pipeline.write(analysis, folder), folder
+
+
+def no_constant(text):
+    raise AssertionError(f"{text} in JSON")
+
+
+def test_result_holds_the_whole_chain(written):
+    paths, _ = written
+    result = json.loads(paths["result.json"].read_text(encoding="utf-8"), parse_constant=no_constant)
+    assert (result["schema"], result["schema_version"]) == ("spaceplane.result", 1)
+    assert [p["name"] for p in result["flight_points"]] == ["Mach 1.5", "Mach 2.5"]
+    assert result["vehicle"]["deflections_deg"]["body_flap"] == pytest.approx(-20.0)
+    for point in result["flight_points"]:
+        assert point["alpha_source"]
+        assert np.shape(point["A"]) == (9, 9)
+        assert np.shape(point["B"])[0] == 9
+        assert {"elevon_left", "body_flap"} <= set(point["inputs"])
+        assert point["modes"] and point["verdicts"]
+        parts = point["coefficients_by_part"]
+        for name in ("CL", "CD", "CY", "Cl", "Cm", "Cn"):
+            total = point["coefficients"][name]
+            assert sum(part[name] for part in parts.values()) == pytest.approx(total, abs=1e-12)
+        assert point["coefficients"]["L_over_D"] == pytest.approx(total_ratio(point))
+        labels = [row["label"] for row in point["convergence"]]
+        assert labels[:6] == ["base", "alpha+", "alpha-", "mach+", "mach-", "beta"]
+        assert labels[6:] == ["elevon_left +5 deg", "rudder_left +5 deg", "body_flap +5 deg"]
+    assert math.isclose(result["flight_points"][1]["alpha_deg"], 16.6)
+
+
+def total_ratio(point):
+    return point["coefficients"]["CL"] / point["coefficients"]["CD"]
+
+
+def test_derivatives_are_those_of_the_impact_method(written, analysis):
+    """Against a finer central difference of the same impact method on the surface's own triangles."""
+    surface, reference = analysis.body.surface, analysis.vehicle.reference
+    step = 1e-4
+    alpha = analysis.points[1].point.alpha
+
+    def lift(angle):
+        wind = direction(angle, 0.0)
+        area = np.linalg.norm(surface.area_vectors, axis=1)
+        normal = -surface.area_vectors / np.maximum(area, 1e-300)[:, None]
+        cp = 2.0 * np.clip(normal @ wind, 0.0, 1.0) ** 2
+        force = (cp[:, None] * -surface.area_vectors).sum(axis=0) / reference.area
+        return force @ [-np.sin(angle), 0.0, np.cos(angle)]
+
+    exact = (lift(alpha + step) - lift(alpha - step)) / (2 * step)
+    found = float(analysis.derivatives.CL_alpha.sel(part="total")[1])
+    assert found == pytest.approx(exact, rel=0.05)  # wall faces of 0.6 m average the normals
+
+
+def test_signs_of_control_derivatives_and_mirror_images(analysis):
+    slopes = analysis.derivatives.sel(part="total")
+    at = {
+        name: float(slopes[name][1])
+        for name in slopes.data_vars
+        if name.count("_") >= 2 and "error" not in name and "step" not in name and "status" not in name
+    }
+    assert at["CL_elevon_left"] > 0.0
+    assert at["Cm_elevon_left"] < 0.0
+    assert at["Cl_elevon_left"] > 0.0  # left elevon down rolls right wing down
+    assert at["Cm_body_flap"] < 0.0
+    assert abs(at["Cl_body_flap"]) < 1e-6
+    for name in ("CL", "CD", "CY", "Cl", "Cm", "Cn"):
+        sign = -1.0 if name in ("CY", "Cl", "Cn") else 1.0
+        assert at[f"{name}_elevon_right"] == pytest.approx(sign * at[f"{name}_elevon_left"], abs=1e-12)
+        assert at[f"{name}_rudder_right"] == pytest.approx(sign * at[f"{name}_rudder_left"], abs=1e-12)
+
+
+def test_files_read_back(written, analysis):
+    paths, folder = written
+    assert sorted(p.name for p in folder.iterdir()) == sorted(paths)
+    body = pyvista.read(paths["surface.vtp"])
+    assert {"Cp_Mach 1.5", "Cp_Mach 2.5", "part"} <= set(body.cell_data)
+    database = AeroDatabase.load(paths["aero.nc"]).data
+    assert list(database.point.values) == ["Mach 1.5", "Mach 2.5"]
+    assert database.sizes["case"] == 12 + 3 * 2
+    moved = database.sel(case=database.label == "elevon_left +5 deg")
+    np.testing.assert_allclose(np.degrees(moved.elevon_left), -12.5)
+    assert "Mach 2.5" in paths["report.html"].read_text(encoding="utf-8")
+
+
+def test_asymmetric_deflections_solve_every_surface_and_both_sideslips(monkeypatch):
+    monkeypatch.setattr(bodies, "solve", newtonian())
+    deflections = ControlDeflections.from_degrees(elevon_left=-10.0, elevon_right=10.0)
+    settings = AnalyseSettings(mach=(2.5,), deflections=deflections, mesh=SETTINGS.mesh)
+    found = analyse(horus_2b(), settings)
+    assert [run.surface for run in found.control_runs] == list(CONTROLS)
+    assert found.plan.labels[-2:] == ("beta+", "beta-")
+    assert abs(float(found.coefficients.Cl.sel(part="total")[0])) > 1e-3
+
+
+def test_a_failed_condition_poisons_what_rests_on_it_and_says_so(monkeypatch, tmp_path):
+    monkeypatch.setattr(bodies, "solve", newtonian(failing={1, 6}))  # Mach 1.5 alpha+, Mach 2.5 base
+    settings = AnalyseSettings(mach=(1.5, 2.5), controls=False, mesh=SETTINGS.mesh)
+    found = analyse(horus_2b(), settings)
+    paths = pipeline.write(found, tmp_path)
+    result = json.loads(paths["result.json"].read_text(encoding="utf-8"), parse_constant=no_constant)
+    first, second = result["flight_points"]
+    assert first["derivatives"]["CL_alpha"]["value"] is None
+    assert first["derivatives"]["CL_alpha"]["status"] == "failed"
+    assert first["derivatives"]["CY_beta"]["value"] is not None
+    assert (first["A"], first["modes"]) == (None, [])
+    assert second["coefficients"]["CL"] is None
+    assert second["equilibrium"]["p_rads"] is None
+    text = "\n".join(result["warnings"])
+    assert "Mach 1.5, condition alpha+: failed: made to fail" in text
+    assert "CL_alpha" in text
+    assert "Mach 2.5: the flow of the base condition failed" in text
+
+
+def test_an_unwritable_folder_is_found_before_anything_is_computed(monkeypatch, tmp_path):
+    def never(*_, **__):
+        raise AssertionError("computed all the same")
+
+    monkeypatch.setattr(bodies, "solve", never)
+    monkeypatch.setattr(bodies, "generate", never)
+    (tmp_path / "file").write_text("here")
+    with pytest.raises(InputError, match="file"):
+        pipeline.run(horus_2b(), SETTINGS, tmp_path / "file" / "out")
+
+
+def test_settings_survive_a_round_trip_through_plain_values():
+    settings = AnalyseSettings.from_mapping(
+        {
+            "mach": [2.5, 5],
+            "alpha_deg": [16, 20],
+            "deflections": {"body_flap": 0},
+            "control_step_deg": 4,
+            "steps": {"alpha_deg": 0.5, "two_step_sizes": True},
+            "mesh": {"wall_cell": 0.3, "target_cells": None},
+            "flow": {"precision": "double"},
+        }
+    )
+    assert settings.steps.alpha == pytest.approx(math.radians(0.5))
+    assert settings.control_step == pytest.approx(math.radians(4.0))
+    assert settings.deflections.elevon_left == pytest.approx(math.radians(-17.5))
+    again = AnalyseSettings.from_mapping(json.loads(json.dumps(settings.as_dict())))
+    assert again.deflections.to_degrees() == pytest.approx(settings.deflections.to_degrees())
+    assert replace(again, deflections=settings.deflections) == settings
+
+
+@pytest.mark.parametrize(
+    ("values", "message"),
+    [
+        ({"mch": [2]}, "did you mean 'mach'"),
+        ({"mesh": {"wall_cel": 1.0}}, r"mesh\.wall_cel"),
+        ({"mesh": 3}, "mesh"),
+        ({"mach": ["fast"]}, "mach"),
+        ({"mach": [-1.0]}, "mach = -1"),
+        ({"mach": []}, "mach"),
+        ({"alpha_deg": [1.0]}, "alpha_deg"),
+        ({"flow": {"precision": "half"}}, "precision"),
+        ({"steps": {"alpha_deg": 0}}, "alpha"),
+        ({"form": "magic"}, "form"),
+        ({"vehicle_class": "V"}, "vehicle_class"),
+        ({"control_step": 0.0}, "control_step"),
+        ({"deflections": {"elevon": 3}}, "elevon"),
+        ({"deflections": {"body_flap": -30}}, "body_flap"),
+    ],
+)
+def test_bad_settings_are_named(values, message):
+    with pytest.raises(InputError, match=message):
+        AnalyseSettings.from_mapping(values)
+
+
+def test_flight_points_beyond_the_tables_need_altitude_and_alpha():
+    with pytest.raises(InputError, match="give the value"):
+        AnalyseSettings(mach=(0.3,)).flight_points()
+    (point,) = AnalyseSettings(mach=(0.3,), altitude_m=(2000.0,), alpha_deg=(8.0,)).flight_points()
+    assert point.alpha_source == "given"
+    with pytest.raises(InputError, match="twice"):
+        AnalyseSettings(mach=(2.5, 2.5)).flight_points()
+    two = AnalyseSettings(mach=(2.5, 2.5), alpha_deg=(10.0, 12.0)).flight_points()
+    assert len({p.name for p in two}) == 2
