@@ -45,8 +45,8 @@ def constant_section(layout: Layout, count: int) -> np.ndarray:
     bottom = np.stack([np.linspace(0, inner, 60), layout.underside(np.linspace(0, inner, 60))], -1)
     end_of_round = np.array([half, zc]) + wall * rounding / reach
     slope = 2 * float(layout.underside(inner)) / inner
-    meet = (half, zc - 0.0)
-    chine = _bezier([tuple(bottom[-1]), (half, bottom[-1, 1] + slope * rounding), meet, tuple(end_of_round)], 24)
+    handle = (half, bottom[-1, 1] + slope * rounding)
+    chine = _bezier([tuple(bottom[-1]), handle, (half, zc), tuple(end_of_round)], 24)
     # Handles of a quarter ellipse, the lower one along the wall so that wall and arch share a tangent.
     kappa = 0.5523
     handle = (s.fuselage_width_m + wall[0] / wall[1] * kappa * (top - zt), zt + kappa * (top - zt))
@@ -82,7 +82,6 @@ def fuselage_shell(layout: Layout, spacing: float) -> Shell:
         spacing: triangle size wanted, m.
     """
     shape, nose = layout.shape, layout.nose
-    section = constant_section(layout, 4)
     perimeter = 2 * (layout.chine + layout.section_height + layout.chine)
     count = 2 * int(np.ceil(0.5 * perimeter / spacing))
     section = constant_section(layout, count)
@@ -100,10 +99,13 @@ def fuselage_shell(layout: Layout, spacing: float) -> Shell:
     t = np.clip(xi / 0.75, 0, 1)
     morph = (t**2 * (3 - 2 * t))[:, None, None]
     unit = (1 - morph) * circle + morph * body
+    # Circle and body are widest at different points; keep the planform at the half-width all the same.
+    widest = (1 - morph[:, 0, 0]) * circle[:, 0].max() + morph[:, 0, 0] * body[:, 0].max()
+    unit[..., 0] *= (widest / unit[..., 0].max(axis=1))[:, None]
     grid = np.empty((len(x), count, 3))
     grid[..., 0] = x[:, None]
     grid[..., 1] = half[:, None] * unit[..., 0]
-    grid[..., 2] = keel[:, None] + (crown - keel)[:, None] * unit[..., 1] - layout.section_height * 0 + layout.z_keel
+    grid[..., 2] = keel[:, None] + (crown - keel)[:, None] * unit[..., 1] + layout.z_keel
 
     cap = _nose_rings(layout, angle, spacing)
     base = _base_rings(grid[-1], spacing)

@@ -8,6 +8,8 @@ from spaceplane.vehicle.layout import STUB, Layout
 from spaceplane.vehicle.lofts import Shell, profile_loft
 
 NOSE_POINTS = 9  # on each quarter of the leading edge
+APEX_RADIUS_RATIO = 0.3  # leading-edge radius at the strake's apex over that outboard: the apex grows out of the chine
+APEX_GROWTH = 0.7  # m of span over which the radius reaches its full value
 TIP_ROUNDING = 0.35  # m, over which the winglet's tip is rounded in plan
 
 
@@ -86,7 +88,9 @@ def wing_shell(layout: Layout, spacing: float) -> Shell:
     x_trail = layout.trailing_edge(q)
     chord = x_trail - x_lead
     thick = layout.thickness(np.maximum(q, 0.0))
+    grown = np.clip(q / APEX_GROWTH, 0, 1)
     radius = np.minimum(shape.leading_edge_radius_m, 0.49 * thick)
+    radius = radius * (APEX_RADIUS_RATIO + (1 - APEX_RADIUS_RATIO) * grown**2 * (3 - 2 * grown))
     hinge = layout.hinge_offset(q)
     sweep = np.hypot(1.0, layout.leading_slope(q))
     nose = np.minimum(radius * sweep, 0.3 * (chord - hinge))
@@ -121,4 +125,3 @@ def _section_directions(layout: Layout, q: np.ndarray) -> np.ndarray:
     angle = elevation * t**2 * (3 - 2 * t)
     length = 1.0 / np.cos(elevation - angle)
     return np.stack([-np.sin(angle) * length, np.cos(angle) * length], -1)
-
