@@ -1,0 +1,92 @@
+"""One small body through mesh and solver, as `spaceplane flow` and polars ask for it."""
+
+import json
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from spaceplane.aero import flow_case
+from spaceplane.aero.flow_case import polar, records, run_flow
+from spaceplane.aero.integrate import integrate
+from spaceplane.errors import InputError
+from spaceplane.flow.settings import FlowSettings
+from spaceplane.mesh.settings import MeshSettings
+from spaceplane.validation.bodies import cone
+from spaceplane.vehicle.properties import ReferenceLengths
+
+KEYS = {
+    "mach", "alpha_deg", "beta_deg", "CL", "CD", "CY", "Cl", "Cm", "Cn", "CA", "CN", "CA_forebody", "CA_base",
+    "Cp_max", "Cp_min", "converged", "verdict", "residual_drop", "iterations", "seconds", "cells", "reason",
+}  # fmt: skip
+HALF_ANGLE = math.radians(20.0)
+REFERENCE = ReferenceLengths(math.pi * math.tan(HALF_ANGLE) ** 2, 1.0, 1.0, (0.0, 0.0, 0.0))
+MESH = MeshSettings(wall_cell=0.05, far_field=1.0)
+ALPHA = math.radians(2.0)
+
+
+@pytest.fixture(scope="module")
+def case():
+    return run_flow(cone(HALF_ANGLE), [3.0], [0.0, ALPHA], [0.0, ALPHA], REFERENCE, MESH, FlowSettings())
+
+
+def test_records_have_the_documented_keys_for_every_combination(case):
+    assert [(r["alpha_deg"], r["beta_deg"]) for r in case.records] == [(0, 0), (0, 2), (2, 0), (2, 2)]
+    for record in case.records:
+        assert set(record) == KEYS
+        assert record["converged"] and record["verdict"] == "converged"
+        assert record["cells"] == case.mesh.cells
+        assert record["CA"] == pytest.approx(record["CA_forebody"] + record["CA_base"])
+    json.loads(json.dumps(case.records, allow_nan=False))
+
+
+def test_a_cone_meets_the_exact_pressure_drag_and_pitch_equals_yaw(case):
+    """Taylor-Maccoll at Mach 3, 20 deg: Cp 0.28427. 20 cells along the cone test the plumbing, not the accuracy."""
+    straight, yawed, pitched, _ = case.records
+    assert straight["CA_forebody"] == pytest.approx(0.28427, rel=0.08)
+    assert pitched["CN"] / ALPHA == pytest.approx(1.686, rel=0.08)
+    # Wind from the right pushes left and, about the apex, turns the nose right; as lift pitches the nose down.
+    body_side = yawed["CY"] * math.cos(ALPHA) - yawed["CD"] * math.sin(ALPHA)
+    assert body_side == pytest.approx(-pitched["CN"], rel=0.04)
+    assert yawed["Cn"] == pytest.approx(-pitched["Cm"], rel=0.04)
+    assert pitched["Cm"] < 0.0
+    for name in ("CY", "Cl", "Cn"):
+        assert abs(straight[name]) < 1e-4
+
+
+def test_failed_conditions_have_no_values(case):
+    bad = replace(case.solution.records[1], verdict="failed", reason="not a number", residual_drop=math.nan)
+    solution = replace(case.solution, records=(case.solution.records[0], bad, *case.solution.records[2:]))
+    good, failed = records(solution, integrate(solution, REFERENCE))[:2]
+    assert failed["CL"] is None and failed["Cp_max"] is None and failed["residual_drop"] is None
+    assert (failed["converged"], failed["reason"]) == (False, "not a number")
+    assert good["CD"] == pytest.approx(case.records[0]["CD"])
+
+
+def test_polar_arranges_the_same_numbers_over_mach_and_alpha(case, monkeypatch):
+    monkeypatch.setattr(flow_case, "generate", lambda body, settings: case.mesh)
+
+    def solve(mesh, conditions, settings, progress):
+        assert (conditions.beta == 0).all()
+        order = [0, 2]
+        return replace(
+            case.solution,
+            conditions=conditions,
+            state=case.solution.state[..., order],
+            wall_pressure=case.solution.wall_pressure[:, order],
+            records=tuple(case.solution.records[i] for i in order),
+        )
+
+    monkeypatch.setattr(flow_case, "solve", solve)
+    table = polar(cone(HALF_ANGLE), [3.0], [0.0, ALPHA], REFERENCE, MESH, FlowSettings())
+    assert table.sizes == {"mach": 1, "alpha": 2}
+    np.testing.assert_allclose(table.CL.sel(mach=3.0), [case.records[0]["CL"], case.records[2]["CL"]])
+    assert table.CL.attrs["positive"] == "up"
+
+
+def test_bad_conditions_are_refused_before_meshing(monkeypatch):
+    monkeypatch.setattr(flow_case, "generate", lambda *_: pytest.fail("meshed"))
+    for machs, alphas, message in (([0.0], [0.0], "mach"), ([2.0], [math.nan], "alpha"), ([], [0.0], "at least one")):
+        with pytest.raises(InputError, match=message):
+            run_flow(cone(HALF_ANGLE), machs, alphas, [0.0], REFERENCE, MESH, FlowSettings())
