@@ -1,8 +1,8 @@
 """From shape and deflections to the one watertight surface.
 
-The symmetric centre body (fuselage and body flap) is united and cut at y = 0; its right half is united with a right wing once
-per distinct pair of elevon and rudder deflections, and the left half is the mirror image of such a right half. A vehicle with
-equal deflections is therefore symmetric to the last bit.
+The symmetric centre body (fuselage and body flap) is united and cut at y = 0; its right half is united with a right
+wing once per distinct pair of elevon and rudder deflections, and the left half is the mirror image of such a right
+half. A vehicle with equal deflections is therefore symmetric to the last bit.
 """
 
 from __future__ import annotations
@@ -12,7 +12,15 @@ from functools import lru_cache
 import numpy as np
 
 from spaceplane.vehicle.controls import ControlDeflections
-from spaceplane.vehicle.flaps import Hinge, bay_cutter, body_flap_hinge, elevon_hinge, flap_shell, rudder_hinge
+from spaceplane.vehicle.flaps import (
+    SIDE_OVERLAP,
+    Hinge,
+    bay_cutter,
+    body_flap_hinge,
+    elevon_hinge,
+    flap_shell,
+    rudder_hinge,
+)
 from spaceplane.vehicle.fuselage import fuselage_shell, nose_end
 from spaceplane.vehicle.layout import Layout
 from spaceplane.vehicle.lofts import Shell
@@ -142,7 +150,7 @@ def _refuse_overlap(centre, solids: _Solids, flaps: dict) -> None:
 def _seal_volume(hinge: Hinge) -> float:
     """Upper bound of the volume that a flap shares with its wing by design, m3."""
     radius = max(hinge.radius)
-    return np.pi * radius**2 * hinge.length + 4 * radius * hinge.chord * 4 * 0.008
+    return np.pi * radius**2 * hinge.length + 16 * radius * hinge.chord * SIDE_OVERLAP
 
 
 def _solid(shell: Shell, what: str):

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 
 from spaceplane.errors import InputError
-from spaceplane.vehicle.shape import _number, unknown_name
+from spaceplane.vehicle.shape import finite_number, unknown_name
 
 CONTROL_LIMITS_DEG: dict[str, tuple[float, float]] = {
     "elevon_left": (-40.0, 40.0),
@@ -49,7 +49,7 @@ class ControlDeflections:
 
     def __post_init__(self) -> None:
         for name in CONTROLS:
-            object.__setattr__(self, name, _number(name, getattr(self, name)))
+            object.__setattr__(self, name, finite_number(name, getattr(self, name)))
 
     @classmethod
     def from_degrees(
@@ -64,7 +64,7 @@ class ControlDeflections:
         for name, value in {**(values or {}), **named}.items():
             if name not in CONTROL_LIMITS_DEG:
                 raise InputError(unknown_name("control surface", name, CONTROLS))
-            radians[name] = math.radians(_number(name, value))
+            radians[name] = math.radians(finite_number(name, value))
         deflections = cls(**radians)
         deflections.validate(allow_outside_limits)
         return deflections

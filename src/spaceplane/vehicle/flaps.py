@@ -1,7 +1,7 @@
 """Control surfaces: knuckle at the hinge, wedge behind it, and the bay each one leaves in the wing.
 
-The knuckle is a round bar about the hinge axis that reaches into the part ahead: it seals the hinge at every angle. The sides
-of a flap overlap the sides of its bay by `SIDE_OVERLAP`, so that an undeflected flap leaves no slot.
+The knuckle is a round bar about the hinge axis that reaches into the part ahead: it seals the hinge at every angle.
+The sides of a flap overlap the sides of its bay by `SIDE_OVERLAP`, so that an undeflected flap leaves no slot.
 """
 
 from __future__ import annotations
@@ -93,7 +93,7 @@ def bay_cutter(hinge: Hinge) -> Shell:
     corners = np.empty((2, 2, 2, 3))
     depth = min(0.35, 4 * max(hinge.radius))
     for i, d in enumerate((0.0, back)):
-        # The sides start at the plane ahead of the axis with the flap's own ends, so that knuckle and bay overlap there.
+        # At the plane ahead of the axis the sides start at the flap's own ends, so that knuckle and bay overlap.
         far = OPEN_END if hinge.open_end else -SIDE_OVERLAP
         ends = (hinge.skew[0] * d + SIDE_OVERLAP, hinge.length + hinge.skew[1] * d + far)
         for j, t in enumerate(ends):

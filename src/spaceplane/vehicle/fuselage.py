@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 
 from spaceplane.vehicle.layout import Layout
@@ -21,7 +23,7 @@ def _bezier(points: list[tuple[float, float]], count: int) -> np.ndarray:
     t = np.linspace(0.0, 1.0, count)[:, None]
     p = [np.array(x, dtype=float) for x in points]
     while len(p) > 1:
-        p = [a + t * (b - a) for a, b in zip(p, p[1:], strict=False)]
+        p = [a + t * (b - a) for a, b in pairwise(p)]
     return p[0]
 
 

@@ -1,7 +1,8 @@
 """Stations, angles and lines that follow from the shape parameters and that several lofts share.
 
 Axes: x aft from the nose, y right, z up, metres. z = 0 is the reference axis, parallel to x and `KEEL_DEPTH` above the
-keel of the constant section; at the default nosecone height the nose tip lies on it. All lines are those of the right half.
+keel of the constant section; at the default nosecone height the nose tip lies on it. All lines are those of the right
+half.
 """
 
 from __future__ import annotations
@@ -31,7 +32,7 @@ class NoseLines:
         x_join: station where sphere and nosecone join, m.
         r_join: radius of the sphere there, m.
         slope: tangent of the surface angle there.
-        exponents: of the power laws of keel, crown and half-width, each tangent to the sphere and to the constant section.
+        exponents: of the power laws of keel, crown and half-width; each is tangent to sphere and constant section.
     """
 
     x_join: float
@@ -243,7 +244,7 @@ class Layout:
 
 
 def _rounded(values: np.ndarray, half_width: float) -> np.ndarray:
-    """Smooth a function tabulated every 0.01 m by a triangular kernel: straight parts stay, kinks become parabolic arcs."""
+    """Smooth a function tabulated every 0.01 m by a triangular kernel: straight parts stay, kinks become arcs."""
     n = round(half_width / 0.01)
     kernel = n + 1 - np.abs(np.arange(-n, n + 1))
     padded = np.concatenate(

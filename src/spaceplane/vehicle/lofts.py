@@ -60,14 +60,6 @@ def profile_loft(grid: np.ndarray) -> Shell:
     return oriented(grid.reshape(-1, 3), np.concatenate([tube(grid), cap, end]))
 
 
-def halving_fan(ring: np.ndarray, first: int, centre: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Fan from a ring to a point. The ring has `first`.. consecutive indices, the centre the index after them."""
-    count = len(ring)
-    j = np.arange(count)
-    triangles = np.stack([first + j, first + (j + 1) % count, np.full(count, first + count)], -1)
-    return triangles, centre
-
-
 def capped_loft(grid: np.ndarray, start: np.ndarray, end: np.ndarray) -> Shell:
     """Closed solid from convex-looking sections with a centre point at each end.
 

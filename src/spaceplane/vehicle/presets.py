@@ -87,10 +87,10 @@ def load(
 ) -> Vehicle:
     """A vehicle by preset name or from a YAML file.
 
-    The file may hold `name`, `base` (a preset to start from), `shape` (names as in `ShapeParameters`), `mass` (mass_kg, Ixx_kgm2,
-    Iyy_kgm2, Izz_kgm2) and `reference` (area_m2, chord_m, span_m, moment_center_station_m, moment_center_height_m: the
-    moment centre of the default shape, m behind the nose and above the reference axis; it moves with the shape by
-    `properties.scaled_moment_center`).
+    The file may hold `name`, `base` (a preset to start from), `shape` (names as in `ShapeParameters`), `mass`
+    (mass_kg, Ixx_kgm2, Iyy_kgm2, Izz_kgm2) and `reference` (area_m2, chord_m, span_m, moment_center_station_m,
+    moment_center_height_m: the moment centre of the default shape, m behind the nose and above the reference axis; it
+    moves with the shape by `properties.scaled_moment_center`).
 
     Args:
         name_or_path: a name from `PRESETS` or a path that ends in .yaml or .yml.

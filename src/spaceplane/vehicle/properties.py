@@ -7,13 +7,13 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 
 from spaceplane.errors import InputError
-from spaceplane.vehicle.shape import ShapeParameters, _number
+from spaceplane.vehicle.layout import KEEL_DEPTH
+from spaceplane.vehicle.shape import ShapeParameters, finite_number
 
 HORUS_LENGTH = 25.0  # m, over all
 HORUS_HEIGHT = 4.5  # m, keel to crown
 MOMENT_CENTER_STATION = 13.0  # m behind the nose; reported once for HORUS-2B, with low confidence
 MOMENT_CENTER_HEIGHT = 0.0  # m above the reference axis
-KEEL_BELOW_AXIS = 1.5  # m
 
 
 @dataclass(frozen=True)
@@ -72,7 +72,7 @@ class ReferenceLengths:
 def _require_positive(record: object, skip: tuple[str, ...] = ()) -> None:
     for f in fields(record):  # type: ignore[arg-type]
         if f.name not in skip:
-            value = _number(f.name, getattr(record, f.name))
+            value = finite_number(f.name, getattr(record, f.name))
             if value <= 0:
                 raise InputError(f"{f.name} = {value:g}: must be positive")
             object.__setattr__(record, f.name, value)
@@ -90,9 +90,10 @@ def scaled_moment_center(
 ) -> tuple[float, float, float]:
     """Moment centre of a changed shape.
 
-    The thesis moves the centre with "a percentage" of the change of fuselage length, likewise in z, and does not
-    print the percentage (section 7.1). Here the centre keeps its share of the whole: x moves by station / 25 m of the change of
-    `fuselage_length_m`, z by (height above the keel) / 4.5 m of the change of `fuselage_height_m`. No other parameter moves it.
+    The thesis moves the centre by a share of the change of fuselage length, likewise in z, and does not print the
+    share (section 7.1). Here the centre keeps its place in proportion: x moves by station / 25 m of the change of
+    `fuselage_length_m`, z by (height above the keel) / 4.5 m of the change of `fuselage_height_m`. No other
+    parameter moves it.
 
     Args:
         shape: the changed shape.
@@ -105,7 +106,7 @@ def scaled_moment_center(
     default = ShapeParameters()
     longer = shape.fuselage_length_m - default.fuselage_length_m
     higher = shape.fuselage_height_m - default.fuselage_height_m
-    share = (height + KEEL_BELOW_AXIS) / HORUS_HEIGHT
+    share = (height + KEEL_DEPTH) / HORUS_HEIGHT
     return station + longer * station / HORUS_LENGTH, 0.0, height + higher * share
 
 

@@ -47,17 +47,15 @@ def _parameter(default: float, lower: float, upper: float, description: str, sou
 class ShapeParameters:
     """Everything that decides the vehicle's shape; lengths in m, angles in degrees (unit in the name).
 
-    The first 19 are those of thesis Table 5.1 with its limits (open upper limits taken as the printed number). The others
-    are what the thesis leaves open. Construct through `ShapeParameters.create` to have values checked, or
-    call `validate`. Reading of the table: docs/geometry.md.
+    The first 19 are those of thesis Table 5.1 with its limits (open upper limits taken as the printed number). The
+    others are what the thesis leaves open. Construct through `ShapeParameters.create` to have values checked, or
+    call `validate`.
     """
 
-    fuselage_width_m: float = _parameter(2.5, 2.0, 4.5, "half-width of the fuselage at the top of its side wall")
+    fuselage_width_m: float = _parameter(2.5, 2.0, 4.5, "half-width at the top of the side wall")
     fuselage_height_m: float = _parameter(1.57, 1.0, 3.0, "height of the straight part of the side wall")
     nosecone_height_m: float = _parameter(1.5, 1.0, 2.0, "height of the nose tip's axis above the keel")
-    fuselage_length_m: float = _parameter(
-        10.0, 5.0, 15.0, "length of the part with constant section; wing moves with it"
-    )
+    fuselage_length_m: float = _parameter(10.0, 5.0, 15.0, "length of the constant section; the wing moves with it")
     fuselage_bottom_curvature_width_m: float = _parameter(
         5.5, 4.5, 6.6, "w of the underside z = h (y/w)^2, whose chord outboard of the chine is the wing's lower skin"
     )
@@ -119,7 +117,7 @@ class ShapeParameters:
         """A checked copy with some values changed; errors as `create`."""
         merged = asdict(self)
         for name, value in values.items():
-            merged[parameter_info(name).name] = _number(name, value)
+            merged[parameter_info(name).name] = finite_number(name, value)
         changed = ShapeParameters(**merged)
         changed.validate(allow_outside_limits)
         return changed
@@ -131,7 +129,7 @@ class ShapeParameters:
             InputError: naming the parameter, its value and the limits.
         """
         for info in PARAMETERS:
-            value = _number(info.name, getattr(self, info.name))
+            value = finite_number(info.name, getattr(self, info.name))
             if value <= 0.0:
                 raise InputError(f"{info.name} = {value:g} {info.unit}: must be positive")
             if not allow_outside_limits and not info.lower <= value <= info.upper:
@@ -182,7 +180,12 @@ def unknown_name(kind: str, name: object, valid: tuple[str, ...]) -> str:
     return f"unknown {kind} '{name}'" + (f": did you mean '{near[0]}'?" if near else f": valid are {', '.join(valid)}")
 
 
-def _number(name: str, value: object) -> float:
+def finite_number(name: str, value: object) -> float:
+    """The value as a float.
+
+    Raises:
+        InputError: not a number, or not finite.
+    """
     if isinstance(value, bool) or not isinstance(value, Real):
         try:
             value = float(value) if isinstance(value, str) else math.nan

@@ -31,8 +31,8 @@ def read_stl(path: str | Path, scale: float = 1.0) -> Surface:
         Closed, consistently oriented surface with outward normals; several separate closed pieces are accepted.
 
     Raises:
-        InputError: file missing, unreadable, empty, damaged, not finite, not watertight (with the number of open edges and the
-            place of the first), inconsistently oriented, or without volume.
+        InputError: file missing, unreadable, empty, damaged, not finite, not watertight (with the number of open edges
+            and the place of the first), inconsistently oriented, or without volume.
     """
     path = Path(path)
     if not np.isfinite(scale) or scale <= 0:
@@ -121,7 +121,8 @@ def _require_closed(path: Path, points: np.ndarray, triangles: np.ndarray) -> No
         if len(bad):
             x, y, z = points[bad[0]].mean(axis=0)
             raise InputError(
-                f"STL file '{path}': not watertight, {len(bad)} edges {name}, the first near x = {x:.3f}, y = {y:.3f}, z = {z:.3f} m"
+                f"STL file '{path}': not watertight, {len(bad)} edges {name}, "
+                f"the first near x = {x:.3f}, y = {y:.3f}, z = {z:.3f} m"
             )
     unpaired, _ = edge_faults(triangles)
     directed = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
@@ -132,8 +133,8 @@ def _require_closed(path: Path, points: np.ndarray, triangles: np.ndarray) -> No
     if len(wrong) or len(unpaired):
         x, y, z = points[(wrong if len(wrong) else unpaired)[0]].mean(axis=0)
         raise InputError(
-            f"STL file '{path}': {max(len(wrong), len(unpaired))} edges between triangles of opposite orientation, the first near "
-            f"x = {x:.3f}, y = {y:.3f}, z = {z:.3f} m"
+            f"STL file '{path}': {max(len(wrong), len(unpaired))} edges between triangles of opposite orientation, "
+            f"the first near x = {x:.3f}, y = {y:.3f}, z = {z:.3f} m"
         )
 
 

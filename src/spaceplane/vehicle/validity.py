@@ -25,8 +25,11 @@ def edge_faults(triangles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     edges = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]]).astype(np.int64)
     size = int(triangles.max()) + 1 if len(triangles) else 1
     key, back = edges[:, 0] * size + edges[:, 1], edges[:, 1] * size + edges[:, 0]
+    ordered = np.sort(key)
+    if np.array_equal(ordered, np.sort(back)) and not (ordered[1:] == ordered[:-1]).any():
+        return edges[:0], edges[:0]
     unique, index, count = np.unique(key, return_index=True, return_counts=True)
-    unpaired = edges[index[~np.isin(unique, back)]]
+    unpaired = edges[index[~np.isin(unique, back, kind="sort")]]
     return unpaired, edges[index[count > 1]]
 
 
@@ -43,7 +46,7 @@ def component_count(surface: Surface) -> int:
 
 def genus(surface: Surface) -> int:
     """Number of handles of a closed one-piece surface, from Euler's formula V - E + F = 2 - 2 g."""
-    vertices = len(np.unique(surface.triangles))
+    vertices = int(np.count_nonzero(np.bincount(surface.triangles.ravel())))
     faces = len(surface.triangles)
     return 1 - (vertices - faces // 2) // 2
 

@@ -14,8 +14,8 @@ TIP_ROUNDING = 0.35  # m, over which the winglet's tip is rounded in plan
 
 
 def section_profile(
-    chord: np.ndarray, nose: np.ndarray, radius: np.ndarray, thick: np.ndarray, hinge: np.ndarray, hinge_thick: np.ndarray,
-    edge: float, counts: tuple[int, int, int],
+    chord: np.ndarray, nose: np.ndarray, radius: np.ndarray, thick: np.ndarray, hinge: np.ndarray,
+    hinge_thick: np.ndarray, edge: float, counts: tuple[int, int, int],
 ) -> tuple[np.ndarray, np.ndarray]:  # fmt: skip
     """Flat-bottomed sections with an elliptic nose, a smooth hump and a straight wedge behind the hinge.
 
@@ -30,7 +30,7 @@ def section_profile(
         counts: intervals on hump, between hump and hinge, and behind the hinge.
 
     Returns:
-        x, z [station, point]: from the lower trailing edge round the nose to the upper one; z above the flat lower skin.
+        x, z [station, point]: from lower trailing edge round the nose to the upper one; z above the flat lower skin.
     """
     x_hinge = chord - hinge
     x_top = np.minimum(0.35 * chord, 0.75 * x_hinge)
@@ -115,8 +115,9 @@ def wing_shell(layout: Layout, spacing: float) -> Shell:
 def _section_directions(layout: Layout, q: np.ndarray) -> np.ndarray:
     """[station, yz] along which a section's thickness is laid off from the lower skin.
 
-    The skin's normal, except near the root: there sections turn to the vertical, so that a thick root with much dihedral does
-    not fold over the stub inside the fuselage; the vector is longer by as much as it is oblique, which keeps the upper skin.
+    The skin's normal, except near the root: there sections turn to the vertical, so that a thick root with much
+    dihedral does not fold over the stub inside the fuselage; the vector is longer by as much as it is oblique, which
+    keeps the upper skin.
     """
     elevation = layout.path(np.maximum(q, 1e-9))[2]
     ramp = 0.3 + 2.5 * layout.shape.wing_root_thickness_m * np.tan(layout.dihedral)
