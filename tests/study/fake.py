@@ -27,7 +27,9 @@ def evaluate(inputs: dict) -> dict:
     if "raise" in inputs:
         raise RuntimeError(inputs["raise"])
     shape = DEFAULTS | inputs.get("shape", {})
-    points = [_point(mach, shape, inputs.get("verdict", "converged")) for mach in inputs.get("mach", (0.8, 1.5, 2.5))]
+    offset = sum(inputs.get("settings", {}).get("mesh", {}).get("offset", (0.6, 0.0)))
+    verdict = inputs.get("verdict", "converged")
+    points = [_point(mach, shape, verdict, 0.02 * (offset - 0.6)) for mach in inputs.get("mach", (0.8, 1.5, 2.5))]
     return {
         "schema": "spaceplane.result",
         "schema_version": 1,
@@ -37,11 +39,11 @@ def evaluate(inputs: dict) -> dict:
     }
 
 
-def _point(mach: float, shape: dict, verdict: str) -> dict:
+def _point(mach: float, shape: dict, verdict: str, noise: float) -> dict:
     base = derivatives("original")[mach if mach in (0.8, 1.5) else 2.5]
     relative = [(shape[name] - DEFAULTS[name]) / DEFAULTS[name] for name in BASE_PARAMETERS]
     values = {
-        name: base[name] * (1 + sum(math.sin(3 * i + 7 * j) * x for j, x in enumerate(relative)))
+        name: base[name] * (1 + noise + sum(math.sin(3 * i + 7 * j) * x for j, x in enumerate(relative)))
         for i, name in enumerate(DERIVATIVES)
     }
     speed = 300.0 * mach

@@ -99,6 +99,7 @@ def test_default_against_optimised_through_the_store(tmp_path, monkeypatch):
     monkeypatch.setattr(
         compare, "case_inputs", lambda vehicle, changes, mach, settings: {"shape": changes, "mach": list(mach)}
     )
+    monkeypatch.setattr(compare, "with_one_wall_cell", lambda vehicle, changes, settings: settings)
     store = tmp_path / "s.sqlite"
     comparison = compare.default_against_optimised(store, evaluate=fake.evaluate)
     assert [point["mach"] for point in comparison["flight_points"]] == [0.8, 1.5, 2.5, 5.0, 10.0]

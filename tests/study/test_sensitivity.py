@@ -16,8 +16,13 @@ PARAMETERS = {"wing_width_m": (), "winglet_length_m": (), "fuselage_height_m": (
 
 @pytest.fixture
 def quick(monkeypatch):
-    """Cases of the stand-in: the shape's changes and the Mach numbers are all it reads."""
-    monkeypatch.setattr(sensitivity, "case_inputs", lambda vehicle, set_, mach, *_: {"shape": set_, "mach": list(mach)})
+    """Cases of the stand-in: the shape's changes, the Mach numbers and the mesh's offset are all it reads."""
+
+    def inputs(vehicle, changes, mach, *_):
+        return {"shape": changes, "mach": list(mach), "settings": {"mesh": {"offset": [0.4, 0.2]}}}
+
+    monkeypatch.setattr(sensitivity, "case_inputs", inputs)
+    monkeypatch.setattr(sensitivity, "with_one_wall_cell", lambda vehicle, changes, settings, outside: settings)
 
 
 def run(tmp_path, evaluate=fake.evaluate, **changes):
@@ -27,7 +32,7 @@ def run(tmp_path, evaluate=fake.evaluate, **changes):
 
 def test_changes_are_those_of_the_law_behind_them(quick, tmp_path):
     found = run(tmp_path)
-    assert (found.computed, found.reused, found.failures) == (7, 0, ())
+    assert (found.computed, found.reused, found.failures) == (9, 0, ())  # 1 default, 2 shifted, 6 changed
     base = fake.evaluate({})["flight_points"][1]["derivatives"]["Cl_beta"]["value"]
     wide = fake.evaluate({"shape": {"wing_width_m": 3.9}})["flight_points"][1]["derivatives"]["Cl_beta"]["value"]
     (row,) = (
@@ -39,7 +44,7 @@ def test_changes_are_those_of_the_law_behind_them(quick, tmp_path):
     assert row.change == pytest.approx(wide - base)
     assert row.relative_percent == pytest.approx(100 * (wide - base) / abs(base))
     again = run(tmp_path)
-    assert (again.computed, again.reused) == (0, 7) and again.rows == found.rows
+    assert (again.computed, again.reused) == (0, 9) and again.rows == found.rows
 
 
 def test_tables_hold_every_number_and_no_nan(quick, tmp_path):
@@ -54,9 +59,20 @@ def test_tables_hold_every_number_and_no_nan(quick, tmp_path):
         if row["value"] and row["default"]:
             assert float(row["change"]) == pytest.approx(float(row["value"]) - float(row["default"]))
     document = json.loads(found.files["sensitivity.json"].read_text())
-    assert document["schema"] == "spaceplane.sensitivity" and document["cases"]["computed"] == 7
+    assert document["schema"] == "spaceplane.sensitivity" and document["cases"]["computed"] == 9
     assert len(document["thesis_agreement"]["rows"]) == 3 * 2 * 3 * 9
     assert "NaN" not in found.files["sensitivity.json"].read_text()
+
+
+def test_changes_are_held_against_what_a_shift_of_the_mesh_does(quick, tmp_path):
+    found = run(tmp_path)
+    for row in found.rows:
+        if row.kind == "derivative":
+            assert row.noise == pytest.approx(0.01 * abs(row.default))  # the stand-in: 2 % of half a cell
+            assert row.resolved == (abs(row.change) > row.noise)
+    without = run(tmp_path, mesh_shifts=0)
+    assert (without.computed, without.reused) == (0, 7)
+    assert all(row.noise is None and row.resolved is None for row in without.rows)
 
 
 def test_relative_percent_difference_is_bounded_and_antisymmetric():
@@ -131,6 +147,9 @@ def test_inputs_resolve_the_vehicle_and_settings():
     assert finer["settings"]["mesh"]["target_cells"] == 12345 and finer["settings"] != default["settings"]
     with pytest.raises(InputError):
         shapes.case_inputs("horus-2b", {"wing_widht_m": 3.9}, (0.8,), {})
+    moved = shapes.shifted(default, (0.5, 0.75))
+    before, after = default["settings"]["mesh"].pop("offset"), moved["settings"]["mesh"].pop("offset")
+    assert after == [pytest.approx((before[0] + 0.5) % 1), pytest.approx((before[1] + 0.75) % 1)] and moved == default
     with pytest.raises(InputError, match="field of the study"):
         shapes.case_inputs("horus-2b", {}, (0.8,), {"mach": [2.0]})
 

@@ -41,6 +41,8 @@ class SensitivityStudy(BaseModel):
         parameters: values to try for each parameter; an empty list means its low and its high limit.
         mach: flight points by their Mach number.
         settings: settings of `spaceplane.pipeline`, by name (mesh and flow).
+        mesh_shifts: how often the default shape is computed again, moved by half a wall cell, to see what the mesh
+            alone changes; 0 to 3.
         allow_outside_limits: try values beyond a parameter's limits.
         workers: processes that compute at once.
     """
@@ -53,6 +55,7 @@ class SensitivityStudy(BaseModel):
     parameters: dict[str, tuple[float, ...]] = Field(default_factory=lambda: dict.fromkeys(BASE_PARAMETERS, ()))
     mach: tuple[float, ...] = (0.8, 1.5, 2.5)
     settings: dict[str, Any] = Field(default_factory=dict)
+    mesh_shifts: int = Field(default=2, ge=0, le=3)
     allow_outside_limits: bool = False
     workers: int = Field(default=1, ge=1)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 
 from spaceplane.study.matching import match_modes
 from spaceplane.study.thesis import DERIVATIVES
@@ -37,6 +37,7 @@ class Change:
         value: of the changed shape; None where it does not exist.
         default: of the default shape; None where it does not exist.
         error: numerical error of the value as the derivative's step sizes show it; None where not estimated.
+        noise: by how much the default's value changes when only the mesh is shifted; None where not known.
         flow: "converged", "oscillating" or "failed": the worst condition of the two flows at this flight point.
     """
 
@@ -52,6 +53,7 @@ class Change:
     default: float | None
     error: float | None
     flow: str
+    noise: float | None = None
 
     @property
     def change(self) -> float | None:
@@ -71,45 +73,70 @@ class Change:
         size = abs(self.value) + abs(self.default)
         return 200.0 * self.change / size if size else 0.0
 
+    @property
+    def resolved(self) -> bool | None:
+        """Whether the change exceeds what a shift of the mesh alone does."""
+        return None if self.change is None or self.noise is None else abs(self.change) > self.noise
+
     def as_row(self) -> dict:
-        """Return the fields and the three changes, one flat row."""
-        extra = ("change", "relative_percent", "rpd_percent")
+        """Return the fields, the three changes and whether they are resolved, one flat row."""
+        extra = ("change", "relative_percent", "rpd_percent", "resolved")
         return asdict(self) | {name: getattr(self, name) for name in extra}
 
 
+def mesh_noise(shifted: list[dict], default: dict) -> dict[tuple[float, str, str], float]:
+    """Return the greatest change of every quantity over results of the default shape on shifted meshes.
+
+    Keys are (Mach number, kind, quantity), see `Change`.
+    """
+    noise: dict[tuple[float, str, str], float] = {}
+    for result in shifted:
+        for row in changes("mesh", "high", 0.0, 0.0, result, default):
+            if row.change is not None:
+                key = row.mach, row.kind, row.quantity
+                noise[key] = max(noise.get(key, 0.0), abs(row.change))
+    return noise
+
+
 def changes(
-    parameter: str, side: str, parameter_value: float, parameter_default: float, result: dict, default: dict
+    parameter: str,
+    side: str,
+    parameter_value: float,
+    parameter_default: float,
+    result: dict,
+    default: dict,
+    noise: dict[tuple[float, str, str], float] | None = None,
 ) -> list[Change]:
     """Compare a changed shape's result with the default's at every flight point that both have.
 
     Args:
-        parameter, side, parameter_value, parameter_default: what was changed, see `Change`.
+        parameter, side, parameter_value, parameter_default: what was changed, in m or deg, see `Change`.
         result, default: two result.json.
+        noise: see `mesh_noise`.
     """
     references = {point["mach"]: point for point in default["flight_points"]}
     rows = []
     for point in result["flight_points"]:
-        reference = references.get(point["mach"])
+        reference, mach = references.get(point["mach"]), point["mach"]
         if reference is None:
             continue
         flow = worst_flow(point, reference)
         for kind, quantity, unit, value, base, error in _quantities(point, reference):
-            rows.append(
-                Change(
-                    parameter,
-                    side,
-                    parameter_value,
-                    parameter_default,
-                    point["mach"],
-                    kind,
-                    quantity,
-                    unit,
-                    value,
-                    base,
-                    error,
-                    flow,
-                )
+            change = Change(
+                parameter,
+                side,
+                parameter_value,
+                parameter_default,
+                mach,
+                kind,
+                quantity,
+                unit,
+                value,
+                base,
+                error,
+                flow,
             )
+            rows.append(replace(change, noise=(noise or {}).get((mach, kind, quantity))))
     return rows
 
 

@@ -12,7 +12,7 @@ from spaceplane.study import thesis
 from spaceplane.study.changes import level_number, worst_flow
 from spaceplane.study.execute import Case, Evaluate, Progress, execute
 from spaceplane.study.matching import match_modes
-from spaceplane.study.shapes import case_inputs, evaluate
+from spaceplane.study.shapes import case_inputs, evaluate, with_one_wall_cell
 
 SCHEMA = "spaceplane.comparison"
 SCHEMA_VERSION = 1
@@ -58,8 +58,9 @@ def default_against_optimised(
     """
     from spaceplane.vehicle.presets import OPTIMISED_SHAPE
 
+    settings = with_one_wall_cell(vehicle, {}, settings or {})
     cases = [
-        Case(label, case_inputs(vehicle, changes, mach, settings or {}))
+        Case(label, case_inputs(vehicle, changes, mach, settings))
         for label, changes in (("default", {}), ("optimised", OPTIMISED_SHAPE))
     ]
     outcome = execute(cases, evaluate, store_path, progress, workers)

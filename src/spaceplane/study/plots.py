@@ -91,7 +91,7 @@ def derivative_bars(rows: tuple[Change, ...], mach: float, parameters: tuple[str
     """Draw relative changes of the nine derivatives, one panel for each parameter (the thesis's Figures 7.1 to 7.9).
 
     Cm_alpha is near zero by trim, so its change is the relative percent difference of thesis (7.1). Bars beyond 150 %
-    are cut and labelled; a cross stands where a flow failed.
+    are cut and labelled; a cross stands where a flow failed; grey is what a shift of the mesh alone changes.
     """
     import matplotlib.pyplot as plt
 
@@ -104,12 +104,17 @@ def derivative_bars(rows: tuple[Change, ...], mach: float, parameters: tuple[str
     axes[-1, 0].set_xticks(range(len(DERIVATIVES)), ticks, fontsize=10)
     figure.supylabel("change relative to the default shape, %", fontsize=9, color="#444444")
     figure.suptitle(f"Aerodynamic derivatives with shape, Mach {mach:g}", x=0.01, ha="left", fontsize=12, weight="bold")
+    if any(row.noise for row in chosen.values()):
+        figure.text(
+            0.99, 0.985, "grey: change by a shift of the mesh", ha="right", va="top", fontsize=8, color="#777777"
+        )
     figure.tight_layout(h_pad=0.5)
     return figure
 
 
 def _parameter_panel(ax: Axes, chosen: dict, parameter: str) -> None:
     values = {}
+    _noise_bands(ax, chosen, parameter)
     for side, colour, shift in (("low", LOW, -0.2), ("high", HIGH, 0.2)):
         for place, name in enumerate(DERIVATIVES):
             row = chosen.get((parameter, side, name))
@@ -135,6 +140,16 @@ def _parameter_panel(ax: Axes, chosen: dict, parameter: str) -> None:
         ax.text(
             place, 1.03, text, transform=ax.transAxes, ha="right", va="bottom", fontsize=8, color=colour, weight="bold"
         )
+
+
+def _noise_bands(ax: Axes, chosen: dict, parameter: str) -> None:
+    """Shade, for each derivative, the change that a shift of the mesh alone makes."""
+    for place, name in enumerate(DERIVATIVES):
+        row = chosen.get((parameter, "low", name)) or chosen.get((parameter, "high", name))
+        if row is None or not row.noise or not row.default:
+            continue
+        size = min(100.0 * row.noise / abs(row.default), _GREATEST_PERCENT)
+        ax.bar(place, 2 * size, 0.86, bottom=-size, color="#d5d5d5", zorder=1)
 
 
 def eigenvalues(result: dict) -> Figure:

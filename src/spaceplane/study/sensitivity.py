@@ -13,13 +13,15 @@ from spaceplane import __version__
 from spaceplane.errors import InputError
 from spaceplane.study import thesis
 from spaceplane.study.cases import SensitivityStudy, nearest
-from spaceplane.study.changes import Change, changes
+from spaceplane.study.changes import Change, changes, mesh_noise
 from spaceplane.study.execute import Case, Evaluate, Failure, Progress, execute
 from spaceplane.study.keys import code_fingerprint
-from spaceplane.study.shapes import ParameterRange, case_inputs, evaluate, parameter_ranges
+from spaceplane.study.shapes import ParameterRange, case_inputs, evaluate, parameter_ranges, shifted, with_one_wall_cell
 
 SCHEMA = "spaceplane.sensitivity"
 SCHEMA_VERSION = 1
+MESH_SHIFTS = ((0.5, 0.0), (0.0, 0.5), (0.5, 0.5))
+"""Along x and z, in wall cells; half a cell is as far as a mesh can be from where it was."""
 
 
 @dataclass(frozen=True)
@@ -101,17 +103,18 @@ def run(
     """
     out_dir = _folder(out_dir)
     variations = plan(study)
-    cases = [Case("default", _inputs(study, {}))]
-    cases += [Case(one.label, _inputs(study, {one.parameter: one.value})) for one in variations]
+    cases = _cases(study, variations)
     outcome = execute(cases, evaluate, store_path, progress, workers or study.workers)
     default = outcome.results[0]
     if default is None:
         raise InputError(f"the default shape has no result: {outcome.failures[0].reason}")
-    good = [(one, result) for one, result in zip(variations, outcome.results[1:], strict=True) if result is not None]
+    repeats, varied = outcome.results[1 : 1 + study.mesh_shifts], outcome.results[1 + study.mesh_shifts :]
+    noise = mesh_noise([result for result in repeats if result is not None], default)
+    good = [(one, result) for one, result in zip(variations, varied, strict=True) if result is not None]
     rows = tuple(
         row
         for one, result in good
-        for row in changes(one.parameter, one.side, one.value, one.range.default, result, default)
+        for row in changes(one.parameter, one.side, one.value, one.range.default, result, default, noise)
     )
     found = SensitivityResult(
         study,
@@ -166,7 +169,7 @@ def as_sensitivities(rows: tuple[Change, ...]) -> list[thesis.Sensitivity]:
             row.quantity,
             row.value,
             row.default,
-            thesis.resolution(row.value, row.default),
+            max(thesis.resolution(row.value, row.default), row.noise or 0.0),
         )
         for row in rows
         if row.kind == "derivative" and row.flow != "failed" and row.value is not None and row.default is not None
@@ -199,8 +202,18 @@ def _document(found: SensitivityResult) -> dict:
     }
 
 
-def _inputs(study: SensitivityStudy, change: dict[str, float]) -> dict:
-    return case_inputs(study.vehicle, study.set | change, study.mach, study.settings, study.allow_outside_limits)
+def _cases(study: SensitivityStudy, variations: tuple[Variation, ...]) -> list[Case]:
+    """The default, the default on shifted meshes, and every changed shape, all with the default's wall cell."""
+    outside = study.allow_outside_limits
+    settings = with_one_wall_cell(study.vehicle, study.set, study.settings, outside)
+
+    def inputs(change: dict[str, float]) -> dict:
+        return case_inputs(study.vehicle, study.set | change, study.mach, settings, outside)
+
+    cases = [Case("default", inputs({}))]
+    for number, shift in enumerate(MESH_SHIFTS[: study.mesh_shifts], start=1):
+        cases.append(Case(f"default, mesh shifted ({number})", shifted(cases[0].inputs, shift)))
+    return cases + [Case(one.label, inputs({one.parameter: one.value})) for one in variations]
 
 
 def _folder(out_dir: Path | str) -> Path:

@@ -59,6 +59,38 @@ def case_inputs(
     return {"vehicle": asdict(subject), "settings": resolved.as_dict()}
 
 
+def with_one_wall_cell(
+    vehicle: str, changes: Mapping[str, float], settings: Mapping, allow_outside_limits: bool = False
+) -> dict:
+    """Return settings with the wall cell, m, that a target number of cells gives the default shape.
+
+    Shapes are then compared on meshes of one fineness: a number of cells would give each shape a cell of its own, and
+    part of the difference between two would be the mesh's. Settings without a target come back as they are.
+
+    Args:
+        vehicle, changes, settings, allow_outside_limits: as `case_inputs`.
+    """
+    from spaceplane.mesh.generate import generate
+    from spaceplane.pipeline import AnalyseSettings
+    from spaceplane.vehicle import presets
+    from spaceplane.vehicle.build import build
+
+    resolved = AnalyseSettings.from_mapping(settings)
+    if resolved.mesh.target_cells is None:
+        return dict(settings)
+    shape = presets.load(vehicle, dict(changes), allow_outside=allow_outside_limits).shape
+    mesh = generate(build(shape, resolved.deflections), resolved.mesh)
+    fixed = {"wall_cell": float(mesh.record["wall_cell_m"]), "target_cells": None}
+    return {**settings, "mesh": {**settings.get("mesh", {}), **fixed}}
+
+
+def shifted(inputs: dict, shift: tuple[float, float]) -> dict:
+    """Return a case's inputs with the body moved in the mesh by a fraction of a wall cell along x and z."""
+    mesh = inputs["settings"]["mesh"]
+    offset = [(start + step) % 1.0 for start, step in zip(mesh["offset"], shift, strict=True)]
+    return {**inputs, "settings": {**inputs["settings"], "mesh": {**mesh, "offset": offset}}}
+
+
 def evaluate(inputs: dict) -> dict:
     """Run the pipeline on the inputs of `case_inputs`; return what result.json would hold, histories left out."""
     from spaceplane.pipeline import AnalyseSettings, analyse
