@@ -121,7 +121,7 @@ def _generate(surface: Surface, settings: MeshSettings, half: bool) -> Mesh:
     cut_done = clock()
 
     skip = -shift[1] if half else 0
-    window = octree.Window(shift + np.array([0, skip, 0]), cut.cut[:, skip:])
+    window = octree.Window(shift + np.array([0, skip, 0]), np.ascontiguousarray(cut.cut[:, skip:]))
     extent = grid.size * 2**grid.levels
     if (window.origin < 0).any() or (window.origin + window.array.shape > extent).any():
         raise InputError("domain: the body is larger than the domain")

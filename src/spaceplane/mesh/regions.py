@@ -91,7 +91,7 @@ def edge_intervals(cells, states, points, low, cross_start, cross_items, vertex,
         for axis in range(3):
             n = 3 * c + axis
             start[n] = total
-            i, j, k = cells[c]
+            i, j, k = cells[c, 0], cells[c, 1], cells[c, 2]
             below = states[i, j, k]
             above = states[i + (axis == 0), j + (axis == 1), k + (axis == 2)]
             if below < 0 or below > 1:
@@ -150,7 +150,8 @@ def list_faces(cells, cell_index):
             i, j, k = cells[c, 0] - (axis == 0), cells[c, 1] - (axis == 1), cells[c, 2] - (axis == 2)
             below = cell_index[i, j, k]
             axes[total] = axis
-            corner[total] = cells[c]
+            for d in range(3):
+                corner[total, d] = cells[c, d]
             beside[total, 0] = below
             beside[total, 1] = c
             cell_faces[c, 2 * axis] = total
@@ -212,7 +213,7 @@ def _gather(face, axes, corner, cell_index, states, points, segments, intervals,
     for slot in range(4):
         # slots run round the face: along b below, along c right, along b above, along c left
         along = b if slot % 2 == 0 else c
-        i, j, k = at
+        i, j, k = at[0], at[1], at[2]
         if slot == 1:
             i, j, k = i + (b == 0), j + (b == 1), k + (b == 2)
         elif slot == 2:
@@ -367,7 +368,8 @@ def face_regions(axes, corner, cell_index, states, points, segments, intervals):
         cut = n - slot_count.sum()
         if cut > 0:
             _join_holes(n, cut, loops, parent, area)
-        label[:n] = -1
+        for m in range(n):
+            label[m] = -1
         for m in range(n):
             root = find(parent, m)
             if label[root] < 0:
@@ -375,7 +377,7 @@ def face_regions(axes, corner, cell_index, states, points, segments, intervals):
                 region_face[regions] = face
                 regions += 1
             r = label[root]
-            u0, v0, u1, v1 = loops[m]
+            u0, v0, u1, v1 = loops[m, 0], loops[m, 1], loops[m, 2], loops[m, 3]
             cross = u0 * v1 - u1 * v0
             region_area[r] += 0.5 * cross
             region_moment[r, 0] += (u0 + u1) * cross / 6.0

@@ -46,8 +46,8 @@ class MeshSettings:
     target_cells: int | None = None
     far_field: float = 6.0
     domain: tuple[tuple[float, float, float], tuple[float, float, float]] | None = None
-    wall_layers: int = 3
-    growth_layers: int = 4
+    wall_layers: int = 2
+    growth_layers: int = 3
     merge_fraction: float = 0.3
     boxes: tuple[RefinementBox, ...] = ()
     symmetric: bool | None = None

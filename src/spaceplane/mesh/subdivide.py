@@ -164,67 +164,52 @@ def _turns(slab, ends, start, loop, p):
 
 
 @njit(cache=True)
+def _folded(slab, ends, start, loop):
+    """[polygon] whether the polygon rises more than once along the axis."""
+    bad = np.zeros(len(start) - 1, np.bool_)
+    for p in range(len(start) - 1):
+        bad[p] = start[p + 1] - start[p] > 3 and _turns(slab, ends, start, loop, p) > 2
+    return bad
+
+
 def _fan(slab, ends, tag, place, edge_triangle, start, loop, triangle, cell):
-    """Replace polygons that rise more than once along the axis by fans of triangles."""
-    polygons = len(triangle)
-    bad = np.zeros(polygons, np.bool_)
-    more_edges = 0
-    for p in range(polygons):
-        if start[p + 1] - start[p] > 3 and _turns(slab, ends, start, loop, p) > 2:
-            bad[p] = True
-            more_edges += start[p + 1] - start[p] - 3
-    if more_edges == 0:
+    """Replace polygons that rise more than once along the axis by fans of triangles: round-off makes a few of them."""
+    bad = _folded(slab, ends, start, loop)
+    if not bad.any():
         return ends, tag, place, edge_triangle, start, loop, triangle, cell
-    edges = len(ends)
-    ends2 = np.empty((edges + more_edges, 2), np.int32)
-    tag2 = np.full(edges + more_edges, -1, np.int8)
-    place2 = np.empty((edges + more_edges, 3), np.int32)
-    edge_triangle2 = np.full(edges + more_edges, -1, np.int32)
-    ends2[:edges] = ends
-    tag2[:edges] = tag
-    place2[:edges] = place
-    edge_triangle2[:edges] = edge_triangle
-    start2 = np.empty(polygons + more_edges + 1, np.int32)
-    loop2 = np.empty(len(loop) + 2 * more_edges, np.int32)
-    triangle2 = np.empty(polygons + more_edges, np.int32)
-    cell2 = np.empty((polygons + more_edges, 3), np.int32)
-    q = 0
-    n = 0
-    e = edges
-    for p in range(polygons):
-        s = start[p]
-        count = start[p + 1] - s
-        if not bad[p]:
-            start2[q] = n
-            triangle2[q] = triangle[p]
-            cell2[q] = cell[p]
-            for m in range(count):
-                loop2[n] = loop[s + m]
-                n += 1
-            q += 1
-            continue
-        apex = ends[loop[s] >> 1, loop[s] & 1]
-        entry = loop[s]
-        for m in range(1, count - 1):
-            start2[q] = n
-            triangle2[q] = triangle[p]
-            cell2[q] = cell[p]
-            code = loop[s + m]
-            loop2[n] = entry
-            loop2[n + 1] = code
-            if m == count - 2:
-                loop2[n + 2] = loop[s + count - 1]
-            else:
-                ends2[e, 0] = ends[code >> 1, 1 - (code & 1)]
-                ends2[e, 1] = apex
-                place2[e] = cell[p]
-                loop2[n + 2] = 2 * e
-                entry = 2 * e + 1
-                e += 1
-            n += 3
-            q += 1
-    start2[q] = n
-    return ends2, tag2, place2, edge_triangle2, start2, loop2, triangle2, cell2
+    new_ends, new_place, new_loops, new_polygons = [], [], [], []
+    for p in np.flatnonzero(bad):
+        ring = [int(code) for code in loop[start[p] : start[p + 1]]]
+        apex = ends[ring[0] >> 1, ring[0] & 1]
+        entry = ring[0]
+        for code in ring[1:-2]:
+            edge = len(ends) + len(new_ends)
+            new_ends.append((ends[code >> 1, 1 - (code & 1)], apex))
+            new_place.append(cell[p])
+            new_loops.append((entry, code, 2 * edge))
+            new_polygons.append(p)
+            entry = 2 * edge + 1
+        new_loops.append((entry, ring[-2], ring[-1]))
+        new_polygons.append(p)
+    count = np.diff(start)
+    sizes = np.concatenate([count[~bad], np.full(len(new_loops), 3)])
+    return (
+        np.concatenate([ends, np.array(new_ends, np.int32)]),
+        np.concatenate([tag, np.full(len(new_ends), -1, np.int8)]),
+        np.concatenate([place, np.array(new_place, np.int32)]),
+        np.concatenate([edge_triangle, np.full(len(new_ends), -1, np.int32)]),
+        np.concatenate([[0], np.cumsum(sizes)]).astype(np.int32),
+        np.concatenate([loop[np.repeat(~bad, count)], np.array(new_loops, np.int32).ravel()]),
+        np.concatenate([triangle[~bad], triangle[new_polygons]]),
+        np.concatenate([cell[~bad], cell[new_polygons]]),
+    )
+
+
+@njit(cache=True)
+def _copy_row(target, n, source, m):
+    """target[n] = source[m] for rows of three, far quicker to compile than the slice."""
+    for d in range(3):
+        target[n, d] = source[m, d]
 
 
 @njit(cache=True)
@@ -246,7 +231,8 @@ def _split_edges(axis, x, slab, ends, tag, place, edge_triangle, first):
     parts = first[edges]
     vertices = len(x)
     x2 = np.empty((vertices + parts - edges, 3))
-    x2[:vertices] = x
+    for n in range(vertices):
+        _copy_row(x2, n, x, n)
     ends2 = np.empty((parts, 2), np.int32)
     tag2 = np.empty(parts, np.int8)
     place2 = np.empty((parts, 3), np.int32)
@@ -272,7 +258,7 @@ def _split_edges(axis, x, slab, ends, tag, place, edge_triangle, first):
         for n in range(count):
             part = first[e] + n
             tag2[part] = tag[e]
-            place2[part] = place[e]
+            _copy_row(place2, part, place, e)
             place2[part, axis] = s
             triangle2[part] = edge_triangle[e]
             ends2[part, 0] = previous
@@ -292,7 +278,7 @@ def _split_edges(axis, x, slab, ends, tag, place, edge_triangle, first):
                 line[w] = 3 - axis - tag[e]
                 # left of a segment that runs up the plane's first axis lies up its second one
                 sign[w] = step if axis == (tag[e] + 1) % 3 else -step
-                crossing_place[w] = place[e]
+                _copy_row(crossing_place, w, place, e)
                 crossing_place[w, axis] = plane
                 crossing_triangle[w] = edge_triangle[e]
                 w += 1
@@ -340,8 +326,9 @@ def _expand(slab, ends, first, start, loop, p, low, codes, slabs):
         for n in range(count):
             rotated[n] = codes[(n + begin) % count]
             levels[n] = slabs[(n + begin) % count]
-        codes[:count] = rotated
-        slabs[:count] = levels
+        for n in range(count):
+            codes[n] = rotated[n]
+            slabs[n] = levels[n]
     return count
 
 
@@ -394,7 +381,7 @@ def _split_polygons(axis, slab, ends, first, ends2, start, loop, triangle, cell)
         for k in range(top + 1):
             start2[q] = n
             triangle2[q] = triangle[p]
-            cell2[q] = cell[p]
+            _copy_row(cell2, q, cell, p)
             cell2[q, axis] = low + k
             stop = rise[k + 1] if k < top else (fall[k - 1] if k > 0 else count)
             for m in range(rise[k], stop):
@@ -405,7 +392,7 @@ def _split_polygons(axis, slab, ends, first, ends2, start, loop, triangle, cell)
                 end = codes[fall[k] % count]
                 cut_ends[cut + k, 0] = ends2[begin >> 1, begin & 1]
                 cut_ends[cut + k, 1] = ends2[end >> 1, end & 1]
-                cut_place[cut + k] = cell[p]
+                _copy_row(cut_place, cut + k, cell, p)
                 cut_place[cut + k, axis] = low + k + 1
                 cut_triangle[cut + k] = triangle[p]
                 loop2[n] = 2 * (base + cut + k)
