@@ -82,19 +82,19 @@ def write_vtp(surface: Surface, solution: Solution, path: Path | str, fields: Ma
 
     if fields is None:
         fields = {label: i for i, label in enumerate(condition_labels(solution.conditions))}
-    cp = surface_cp(surface, solution)
+    cp = surface_cp(surface, solution, list(fields.values()))
     faces = np.column_stack([np.full(len(surface.triangles), 3), surface.triangles])
     body = pyvista.PolyData(np.asarray(surface.points, dtype=float), faces.ravel())
     body.cell_data["part"] = np.asarray(surface.part, dtype=np.int32)
-    for name, index in fields.items():
-        body.cell_data[f"Cp_{name}"] = cp[:, index].astype(np.float32)
+    for column, name in enumerate(fields):
+        body.cell_data[f"Cp_{name}"] = cp[:, column].astype(np.float32)
     body.add_field_data(np.array(surface.part_names, dtype=str), "part_names")
     _note(body, solution)
     _save(body, path)
 
 
-def surface_cp(surface: Surface, solution: Solution) -> np.ndarray:
-    """[triangle, condition] pressure coefficient at the triangles' centroids.
+def surface_cp(surface: Surface, solution: Solution, conditions: Sequence[int] | None = None) -> np.ndarray:
+    """[triangle, condition] pressure coefficient at the triangles' centroids, of all conditions or of those chosen.
 
     A weighted mean over the wall pieces around: pieces that face another way do not count (so that both sides of a thin
     wing keep apart), those of other parts count little, near ones most.
@@ -102,7 +102,8 @@ def surface_cp(surface: Surface, solution: Solution) -> np.ndarray:
     from scipy.spatial import cKDTree
 
     mesh = solution.mesh
-    cp = solution.wall_cp().astype(float)[mesh.piece_wall]
+    chosen = slice(None) if conditions is None else list(conditions)
+    cp = solution.wall_cp()[:, chosen].astype(float)[mesh.piece_wall]
     if len(cp) == 0:
         raise InputError("mesh: it has no wall, so there is no surface pressure")
     tree = cKDTree(mesh.piece_center)
