@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 from numba import prange
 
-from spaceplane.flow.compiled import kernel
+from spaceplane.flow.compiled import WIDTH, kernel
 from spaceplane.flow.topology import Topology
 
 
@@ -29,10 +29,10 @@ def record_difference(
     lanes = change.shape[2]
     chunk_cells = topology.chunk_cells
     for chunk in prange(chunk_cells.shape[0] - 1):
-        b = np.zeros((slots, lanes), np.float64)
-        g = np.zeros((slots, lanes), np.float64)
-        f = np.empty((5, lanes), change.dtype)
-        d = np.empty((5, lanes), change.dtype)
+        b = np.zeros((slots, WIDTH), np.float64)
+        g = np.zeros((slots, WIDTH), np.float64)
+        f = np.empty((5, WIDTH), change.dtype)
+        d = np.empty((5, WIDTH), change.dtype)
         for i in range(chunk_cells[chunk], chunk_cells[chunk + 1]):
             for k in range(5):
                 for n in range(lanes):
@@ -50,8 +50,8 @@ def record_difference(
                     d4 = differences[i, s, 4, n] * scale[4, n]
                     b[s, n] += d0 * f[0, n] + d1 * f[1, n] + d2 * f[2, n] + d3 * f[3, n] + d4 * f[4, n]
                     g[s, n] += d0 * d[0, n] + d1 * d[1, n] + d2 * d[2, n] + d3 * d[3, n] + d4 * d[4, n]
-        products[chunk] = b
-        gram[chunk] = g
+        products[chunk] = b[:, :lanes]
+        gram[chunk] = g[:, :lanes]
 
 
 @kernel
@@ -65,7 +65,7 @@ def apply_step(topology, state, change, last_change, last_step, combined, weight
     chunk_cells = topology.chunk_cells
     for chunk in prange(chunk_cells.shape[0] - 1):
         count = np.zeros(lanes, state.dtype)
-        step = np.empty((5, lanes), state.dtype)
+        step = np.empty((5, WIDTH), state.dtype)
         for i in range(chunk_cells[chunk], chunk_cells[chunk + 1]):
             for k in range(5):
                 for n in range(lanes):

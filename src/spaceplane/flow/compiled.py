@@ -19,6 +19,9 @@ os.environ.setdefault("GOMP_SPINCOUNT", "0")
 import numba
 from numba import config, njit
 
+# Most lanes of an ensemble: a constant, so that the compiler knows the rows of scratch arrays apart and vectorises.
+WIDTH = 32
+
 # NaN and infinity keep their meaning (guards test for them); the rest of fast arithmetic is allowed.
 FAST_MATH = {"reassoc", "contract", "arcp", "afn", "nsz"}
 

@@ -82,32 +82,31 @@ class Ensemble:
 
     def evaluate(self) -> np.ndarray:
         """Compute the residual of the present state; its norm [lane], fp64."""
-        t, s = self.topology, self.settings
-        if self.order == 2:
-            gradients(
-                t, self.state, self.gradient, self.sensor, self.limiter, self.low, self.high, self.smallness, self.gamma
-            )
-        else:
-            self.sensor[:] = self.low
-        gradient = self.gradient if self.order == 2 else self.gradient_of_nothing()
-        fluxes(
-            t,
-            self.state,
-            gradient,
-            self.sensor,
-            self.free,
-            self.residual,
-            self.gamma,
-            self.dtype(s.low_mach if self.order == 2 else 1.0),
-            self.stiffness(),
-            self.order,
-        )
-        sums = np.zeros((len(t.chunk_cells) - 1, self.state.shape[2]))
-        implicit.squared_norms(t, self.residual, sums)
+        self.reconstruct()
+        self.balance()
+        sums = np.zeros((len(self.topology.chunk_cells) - 1, self.state.shape[2]))
+        implicit.squared_norms(self.topology, self.residual, sums)
         return np.sqrt(sums.sum(axis=0))
 
-    def gradient_of_nothing(self) -> np.ndarray:
-        """Zero gradients; the kernels of a first-order level read only those of wall cells, multiplied by zero."""
+    def reconstruct(self) -> None:
+        """Fill gradients and sensor."""
+        if self.order == 1:
+            self.sensor[:] = self.low
+            return
+        gradients(
+            self.topology, self.state, self.gradient, self.sensor, self.limiter, self.low, self.high, self.smallness, self.gamma
+        )  # fmt: skip
+
+    def balance(self) -> None:
+        """Fill the residual from state, gradients and sensor."""
+        low_mach = self.dtype(self.settings.low_mach if self.order == 2 else 1.0)
+        fluxes(
+            self.topology, self.state, self.slopes(), self.sensor, self.free, self.residual, self.gamma, low_mach,
+            self.stiffness(), self.order,
+        )  # fmt: skip
+
+    def slopes(self) -> np.ndarray:
+        """Gradients; on first-order levels zeros, of which the kernels read only those of wall cells, times zero."""
         if len(self.gradient) != self.mesh.cells:
             self.gradient = np.zeros((self.mesh.cells, 15, self.state.shape[2]), self.dtype)
         return self.gradient
@@ -118,13 +117,22 @@ class Ensemble:
 
     def correct(self, cfl: np.ndarray) -> None:
         """Fill `change` with the implicit increment at the CFL numbers [lane]."""
-        t = self.topology
+        self.factorise(cfl)
+        self.relax()
+
+    def factorise(self, cfl: np.ndarray) -> None:
+        """Fill the inverse diagonal blocks at the CFL numbers [lane]."""
         implicit.diagonals(
-            t, self.state, self.sensor, self.free, cfl.astype(self.dtype), self.gamma, self.stiffness(), self.inverse
-        )
+            self.topology, self.state, self.sensor, self.free, cfl.astype(self.dtype), self.gamma, self.stiffness(), self.inverse
+        )  # fmt: skip
+
+    def relax(self) -> None:
+        """Solve for `change` by one symmetric Gauss-Seidel sweep from zero."""
         self.change[:] = 0
         for forward in (True, False):
-            implicit.sweep(t, self.state, self.sensor, self.residual, self.inverse, self.change, self.gamma, forward)
+            implicit.sweep(
+                self.topology, self.state, self.sensor, self.residual, self.inverse, self.change, self.gamma, forward
+            )  # fmt: skip
 
     def apply(self, largest: float, calm: np.ndarray) -> np.ndarray:
         """Add the accelerated change to the state; [lane] share of cells that were scaled back.
@@ -145,8 +153,7 @@ class Ensemble:
     def wall_pressure(self) -> np.ndarray:
         """[wall, lane] pressure on the walls, from the state and gradients of the last `evaluate`."""
         out = np.zeros((len(self.wall_area), self.state.shape[2]), self.dtype)
-        gradient = self.gradient if self.order == 2 else self.gradient_of_nothing()
-        pressures_on_wall(self.topology, self.state, gradient, self.gamma, self.stiffness(), self.order, out)
+        pressures_on_wall(self.topology, self.state, self.slopes(), self.gamma, self.stiffness(), self.order, out)
         return out
 
     def forces(self) -> np.ndarray:

@@ -11,7 +11,7 @@ import math
 import numpy as np
 from numba import prange
 
-from spaceplane.flow.compiled import inlined, kernel
+from spaceplane.flow.compiled import WIDTH, inlined, kernel
 from spaceplane.flow.jacobian import dissipation_increment, face_average, flux_increment, wave_dissipation
 
 
@@ -163,8 +163,8 @@ def diagonals(topology, state, sensor, free, cfl, gamma, stiffness, out):
     walls = topology.walls
     chunk_cells = topology.chunk_cells
     for chunk in prange(chunk_cells.shape[0] - 1):
-        block = np.empty((25, lanes), state.dtype)
-        radius = np.empty(lanes, state.dtype)
+        block = np.empty((25, WIDTH), state.dtype)
+        radius = np.empty(WIDTH, state.dtype)
         for i in range(chunk_cells[chunk], chunk_cells[chunk + 1]):
             real = type(gamma)
             half = real(0.5)
@@ -281,7 +281,7 @@ def sweep(topology, state, sensor, residual, inverse, change, gamma, forward):
             block = color_blocks[begin + b]
             first = block_cells[block]
             count = block_cells[block + 1] - first
-            rhs = np.empty((5, lanes), state.dtype)
+            rhs = np.empty((5, WIDTH), state.dtype)
             for m in range(count):
                 i = first + m if forward else first + count - 1 - m
                 real = type(gamma)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numba import prange
 
-from spaceplane.flow.compiled import inlined, kernel
+from spaceplane.flow.compiled import WIDTH, inlined, kernel
 from spaceplane.flow.limiters import barth_jespersen, venkatakrishnan
 
 
@@ -53,11 +53,11 @@ def gradients(topology, state, gradient, sensor, limiter, theta_low, theta_high,
     edge_reach = topology.boundary_reach
     chunk_cells = topology.chunk_cells
     for chunk in prange(chunk_cells.shape[0] - 1):
-        high = np.empty((5, lanes), state.dtype)
-        low = np.empty((5, lanes), state.dtype)
-        phi = np.empty((5, lanes), state.dtype)
-        eps2 = np.empty((5, lanes), state.dtype)
-        g = np.empty((15, lanes), state.dtype)
+        high = np.empty((5, WIDTH), state.dtype)
+        low = np.empty((5, WIDTH), state.dtype)
+        phi = np.empty((5, WIDTH), state.dtype)
+        eps2 = np.empty((5, WIDTH), state.dtype)
+        g = np.empty((15, WIDTH), state.dtype)
         for i in range(chunk_cells[chunk], chunk_cells[chunk + 1]):
             real = type(topology.volume[i])
             one = real(1)

@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numba import prange
 
-from spaceplane.flow.compiled import inlined, kernel
+from spaceplane.flow.compiled import WIDTH, inlined, kernel
 from spaceplane.flow.fluxes import blend, shrink_normal_jump
 
 
@@ -58,9 +58,9 @@ def fluxes(topology, state, gradient, sensor, free, residual, gamma, low_mach, s
         real = type(gamma)
         zero = real(0)
         p0 = real(1) / gamma
-        left = np.empty((5, lanes), state.dtype)
-        right = np.empty((5, lanes), state.dtype)
-        f = np.empty((5, lanes), state.dtype)
+        left = np.empty((5, WIDTH), state.dtype)
+        right = np.empty((5, WIDTH), state.dtype)
+        f = np.empty((5, WIDTH), state.dtype)
         residual[first:last] = zero
         for entry in range(chunk_start[chunk], chunk_start[chunk + 1]):
             face = chunk_faces[entry]

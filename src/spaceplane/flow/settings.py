@@ -79,7 +79,7 @@ class FlowSettings:
             ("coarse_iterations", 1, 10**6),
             ("coarse_levels", 0, 10),
             ("window", 2, 1000),
-            ("smallest_lanes", 1, 64),
+            ("smallest_lanes", 1, 32),
         ):
             value = getattr(self, name)
             if not (isinstance(value, int | float) and math.isfinite(value) and low <= value <= high):

@@ -9,7 +9,7 @@ import numpy as np
 
 from spaceplane.errors import InputError
 from spaceplane.flow.coarsen import Sequence, sequence
-from spaceplane.flow.compiled import is_compiled, mark_compiled
+from spaceplane.flow.compiled import WIDTH, is_compiled, mark_compiled
 from spaceplane.flow.ensemble import Ensemble, free_stream
 from spaceplane.flow.march import Caution, History, converged, march
 from spaceplane.flow.settings import FlowSettings, check
@@ -58,11 +58,13 @@ def solve(
 
     job = _Job(levels, topologies, conditions, settings, say)
     caution = Caution(settings.cfl_start, settings.cfl_max)
-    job.run(np.arange(len(conditions)), caution, seconds)
+    for which in np.array_split(np.arange(len(conditions)), -(-len(conditions) // WIDTH)):
+        job.run(which, caution, seconds)
     retry = np.array([c for c in range(len(conditions)) if not job.histories[c].done and job.worth_retry(c)], dtype=int)
     if len(retry):
         say("retry", 0, len(retry), f"{len(retry)} conditions once more, carefully")
-        job.run(retry, Caution(1.0, min(10.0, settings.cfl_max), 1.15, 0.1), seconds)
+        for which in np.array_split(retry, -(-len(retry) // WIDTH)):
+            job.run(which, Caution(1.0, min(10.0, settings.cfl_max), 1.15, 0.1), seconds)
     if cold:
         mark_compiled(settings.precision)
     records = tuple(judge(job.histories[c], settings) for c in range(len(conditions)))
