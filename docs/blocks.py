@@ -310,6 +310,100 @@ def _published_and_computed(record: Any) -> str:
     return shown if record.within else f"**{shown}**"
 
 
+def dynamics_validation() -> str:
+    """Published eigenmodes beside ours; computed on the spot, there is no flow in them."""
+    from spaceplane.validation import markdown_table, run
+
+    records = run(("dynamics",))
+    notes = dict.fromkeys(record.note for record in records if record.note)
+    sources = "; ".join(dict.fromkeys(record.source for record in records))
+    return f"{markdown_table(records)}\nSources: {sources}.\n" + "".join(f"\n- {note}" for note in notes)
+
+
+def reproduction_block(name: str) -> Callable[[], str]:
+    """A table of the page on the thesis's eigenvalues."""
+
+    def block() -> str:
+        from spaceplane.validation import thesis
+
+        return thesis.tables()[name]
+
+    return block
+
+
+def alpha_schedule() -> str:
+    """Angle of attack by Mach number."""
+    from spaceplane.dynamics.flightpoint import ALPHA_SCHEDULE
+
+    return table(("Mach", "alpha, deg"), [(f"{mach:g}", f"{alpha:g}") for mach, alpha in ALPHA_SCHEDULE], "rr")
+
+
+def gas_validity() -> str:
+    """Continuum and ideal gas along the descent."""
+    from spaceplane.dynamics.flightpoint import TRAJECTORY_ALTITUDE
+    from spaceplane.environment.atmosphere import us1976
+    from spaceplane.environment.validity import assess_validity
+
+    rows = []
+    for mach, altitude in TRAJECTORY_ALTITUDE.items():
+        found = assess_validity(mach, us1976(altitude), 25.0)
+        rows.append(
+            (
+                f"{mach:g}",
+                f"{altitude / 1000:g}",
+                f"{found.knudsen:.2g}",
+                f"{found.ideal_shock_temperature:.0f}",
+                f"{found.shock_temperature:.0f}",
+                f"{found.compressibility_factor:.3f}",
+                f"{100 * found.density_ratio_error:.0f} %",
+            )
+        )
+    head = (
+        "Mach",
+        "altitude, km",
+        "Knudsen number",
+        "T2 ideal, K",
+        "T2 equilibrium, K",
+        "Z",
+        "shock density above ideal",
+    )
+    return table(head, rows, "rrrrrrr")
+
+
+def mil_limits() -> str:
+    """Limits of MIL-F-8785C for class III, category B, as the program holds them."""
+    from spaceplane.qualities import limits
+
+    spec = limits.specification()
+    phugoid, period, cap = spec["phugoid"], spec["short_period_damping"]["B"], spec["short_period_frequency"]["B"]
+    dutch, roll, spiral = limits.of("dutch_roll", "B", "III"), limits.of("roll", "B", "III"), spec["spiral"]["B"]
+    low = phugoid["damping_ratio_low"]
+    rows = [
+        (
+            "phugoid",
+            "damping ratio",
+            f">= {low[0]}",
+            f">= {low[1]:g}",
+            f"doubles in >= {phugoid['double_time_low_s']:g} s",
+        ),
+        ("short period", "damping ratio", *_ranges(period)),
+        ("short period", "omega^2 / (n/alpha), 1/(g s^2)", *_ranges(cap)),
+        ("Dutch roll", "damping ratio", *(f">= {x:g}" for x in dutch["zeta"])),
+        ("Dutch roll", "damping ratio times frequency, rad/s", *(f">= {x:g}" for x in dutch["zeta_omega"]), "-"),
+        ("Dutch roll", "natural frequency, rad/s", *(f">= {x:g}" for x in dutch["omega"])),
+        ("roll mode", "time constant, s", *(f"<= {x:g}" for x in roll)),
+        ("spiral", "time to double, s", *(f">= {x:g}" for x in spiral)),
+    ]
+    keys = ("phugoid", "short_period_damping", "short_period_frequency", *["dutch_roll"] * 3, "roll", "spiral")
+    rows = [(spec[key]["paragraph"], *row) for key, row in zip(keys, rows, strict=True)]
+    return table(("paragraph", "mode", "quantity", "level 1", "level 2", "level 3"), rows)
+
+
+def _ranges(entry: dict) -> list[str]:
+    highs = [*entry["high"], None]
+    return [f">= {a:g}" if b is None else f"{a:g} to {b:g}" for a, b in zip(entry["low"], highs, strict=True)]
+
+
 BLOCKS: dict[str, Callable[[], str]] = {
     "shape parameters": shape_parameters,
     "controls": controls,
@@ -326,4 +420,13 @@ BLOCKS: dict[str, Callable[[], str]] = {
     "validation hb2": validation_block("hb2"),
     "validation horus": validation_horus,
     "validation horus lateral": horus_lateral,
+    "dynamics validation": dynamics_validation,
+    "alpha schedule": alpha_schedule,
+    "gas validity": gas_validity,
+    "mil limits": mil_limits,
+    "reproduction reference": reproduction_block("reference"),
+    "reproduction side force": reproduction_block("side force"),
+    "reproduction lateral": reproduction_block("lateral"),
+    "reproduction longitudinal": reproduction_block("longitudinal"),
+    "reproduction converted": reproduction_block("converted"),
 }

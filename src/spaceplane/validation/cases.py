@@ -17,6 +17,7 @@ CASES: dict[str, str] = {
     "sphere": "spaceplane.validation.sphere",
     "hb2": "spaceplane.validation.hb2",
     "horus": "spaceplane.validation.horus",
+    "dynamics": "spaceplane.validation.dynamics",
 }
 """Case name -> module whose `run(fine, progress) -> list[Record]` computes it; imported when the case is run."""
 

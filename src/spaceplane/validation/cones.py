@@ -9,6 +9,7 @@ import xarray as xr
 
 from spaceplane.aero.integrate import integrate
 from spaceplane.flow.solution import FlowConditions, Solution
+from spaceplane.mesh.settings import MeshSettings
 from spaceplane.validation import bodies
 from spaceplane.validation.cases import Progress
 from spaceplane.validation.conical import CN_ALPHA_STONE, center_of_pressure, taylor_maccoll
@@ -19,6 +20,8 @@ CASE = "cones"
 MACHS = (1.5, 3.0, 10.0)
 HALF_ANGLES_DEG = (10.0, 20.0, 30.0)
 STEP = math.radians(1.0)
+WALL_LAYERS = 8
+"""Layers of the finest cells: enough to hold the shock of a hypersonic cone."""
 EXACT = "Taylor and Maccoll (1933), solved here"
 STONE = "Stone (1948), as tabulated by Kopal (1947) and Sims (1964)"
 SUBSONIC_NOTE = (
@@ -31,14 +34,26 @@ def run(fine: bool, progress: Progress) -> list[Record]:
     """Surface Cp, C_N_alpha, C_m_alpha and their lateral twins on nine cones.
 
     Args:
-        fine: 100 wall cells along the cone instead of 40.
+        fine: 80 wall cells along the cone and 8 across the layer between cone and shock, instead of 30 and 3.
         progress: told what runs.
     """
+    # One mesh for the Mach numbers that ask for the same cell: at Mach 10 the shock lies close to the wall.
+    meshes: dict[tuple[float, float], list[float]] = {}
+    for angle_deg in HALF_ANGLES_DEG:
+        for mach in MACHS:
+            meshes.setdefault((angle_deg, wall_cell(mach, math.radians(angle_deg), fine)), []).append(mach)
     records = []
-    for index, angle_deg in enumerate(HALF_ANGLES_DEG):
-        progress(f"half angle {angle_deg:g} deg", index / len(HALF_ANGLES_DEG))
-        records += cone_records(math.radians(angle_deg), MACHS, cell=0.01 if fine else 0.025)
+    for index, ((angle_deg, cell), machs) in enumerate(meshes.items()):
+        progress(f"half angle {angle_deg:g} deg, Mach {', '.join(f'{m:g}' for m in machs)}", index / len(meshes))
+        records += cone_records(math.radians(angle_deg), tuple(machs), cell)
     return records
+
+
+def wall_cell(mach: float, half_angle: float, fine: bool) -> float:
+    """Wall cell, m, of a cone of 1 m and `half_angle` rad: a share of its length or of the shock layer at the base."""
+    along, across = (80, 8) if fine else (30, 3)
+    layer = math.tan(taylor_maccoll(mach, half_angle).shock_angle) - math.tan(half_angle)
+    return min(1.0 / along, layer / across)
 
 
 def cone_records(half_angle: float, machs: tuple[float, ...], cell: float) -> list[Record]:
@@ -46,7 +61,8 @@ def cone_records(half_angle: float, machs: tuple[float, ...], cell: float) -> li
     surface = bodies.cone(half_angle)
     mach = np.repeat(machs, 3)
     alpha, beta = np.tile([0.0, STEP, 0.0], len(machs)), np.tile([0.0, 0.0, STEP], len(machs))
-    solution = solve_body(surface, cell, FlowConditions(mach, alpha, beta))
+    settings = MeshSettings(wall_cell=cell, far_field=2.0, wall_layers=WALL_LAYERS)
+    solution = solve_body(surface, settings, FlowConditions(mach, alpha, beta))
     area = math.pi * math.tan(half_angle) ** 2
     coefficients = integrate(solution, reference_of(area, 1.0)).sel(part="total")
     cp = surface_cp(solution)

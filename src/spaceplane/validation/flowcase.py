@@ -14,9 +14,9 @@ from spaceplane.vehicle.properties import ReferenceLengths
 from spaceplane.vehicle.surface import Surface
 
 
-def solve_body(surface: Surface, cell: float, conditions: FlowConditions) -> Solution:
-    """Mesh the body with wall cells of `cell` m and solve every condition on the default settings."""
-    return solve(generate(surface, MeshSettings(wall_cell=cell)), conditions, FlowSettings())
+def solve_body(surface: Surface, mesh: MeshSettings, conditions: FlowConditions) -> Solution:
+    """Mesh the body and solve every condition on the flow's default settings."""
+    return solve(generate(surface, mesh), conditions, FlowSettings())
 
 
 def reference_of(

@@ -8,6 +8,7 @@ import numpy as np
 
 from spaceplane.aero.integrate import integrate
 from spaceplane.flow.solution import FlowConditions
+from spaceplane.mesh.settings import MeshSettings
 from spaceplane.validation import bodies
 from spaceplane.validation.cases import Progress
 from spaceplane.validation.flowcase import reference_of, solve_body
@@ -39,7 +40,7 @@ def run(fine: bool, progress: Progress) -> list[Record]:
     mach = np.repeat(list(MEASURED), 2)
     alpha = np.tile([0.0, STEP], len(MEASURED))
     conditions = FlowConditions(mach, alpha, np.zeros_like(alpha))
-    solution = solve_body(bodies.hb2(), 1.0 / (32 if fine else 16), conditions)
+    solution = solve_body(bodies.hb2(), MeshSettings(wall_cell=1.0 / (32 if fine else 16)), conditions)
     reference = reference_of(math.pi / 4.0, 1.0, (MOMENT_STATION, 0.0, 0.0))
     values = integrate(solution, reference).sel(part="total")
     records = []

@@ -10,6 +10,7 @@ import xarray as xr
 
 from spaceplane.aero.integrate import integrate
 from spaceplane.flow.solution import FlowConditions
+from spaceplane.mesh.settings import MeshSettings
 from spaceplane.validation import horus_tables
 from spaceplane.validation.cases import Progress
 from spaceplane.validation.flowcase import solve_body
@@ -84,7 +85,7 @@ def conditions(lateral: bool) -> FlowConditions:
 def coefficients(vehicle: Vehicle, configuration: Configuration, cell: float) -> xr.Dataset:
     """Total coefficients on the grid of the tables; wall `cell` m. An unconverged condition has NaN."""
     surface = build(vehicle.shape, ControlDeflections.from_degrees(**configuration.deflections_deg))
-    solution = solve_body(surface, cell, conditions(lateral=configuration is CLEAN))
+    solution = solve_body(surface, MeshSettings(wall_cell=cell), conditions(lateral=configuration is CLEAN))
     total = integrate(solution, vehicle.reference).sel(part="total")
     return total.where([record.good for record in solution.records])
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from spaceplane.aero.integrate import integrate
 from spaceplane.flow.solution import FlowConditions, Solution
+from spaceplane.mesh.settings import MeshSettings
 from spaceplane.validation import bodies
 from spaceplane.validation.blunt import DRAG_LOTH, normal_shock_pressure, stagnation_cp, standoff_billig
 from spaceplane.validation.cases import Progress
@@ -40,7 +41,7 @@ def run(fine: bool, progress: Progress) -> list[Record]:
     cell = 2.0 / (64 if fine else 32)
     progress(f"Mach {', '.join(f'{mach:g}' for mach in MACHS)}", 0.0)
     zero = np.zeros(len(MACHS))
-    solution = solve_body(bodies.sphere(), cell, FlowConditions(np.array(MACHS), zero, zero))
+    solution = solve_body(bodies.sphere(), MeshSettings(wall_cell=cell), FlowConditions(np.array(MACHS), zero, zero))
     return sphere_records(solution)
 
 

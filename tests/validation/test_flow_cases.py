@@ -1,0 +1,85 @@
+"""The flow cases: coarse and quick in the suite, all of them on fine meshes when marked slow."""
+
+import math
+
+import numpy as np
+import pytest
+
+from spaceplane import validation
+from spaceplane.aero.integrate import integrate
+from spaceplane.flow.solution import FlowConditions
+from spaceplane.mesh.settings import MeshSettings
+from spaceplane.validation import bodies, cones, horus, horus_tables
+from spaceplane.validation.flowcase import part_of_wall, reference_of, solve_body
+
+
+@pytest.fixture(scope="module")
+def cone():
+    """A 20 deg cone at Mach 3 on a coarse mesh: straight, at 1 deg of alpha, at 1 deg of beta."""
+    step = cones.STEP
+    conditions = FlowConditions(np.full(3, 3.0), np.array([0.0, step, 0.0]), np.array([0.0, 0.0, step]))
+    return solve_body(bodies.cone(math.radians(20.0)), MeshSettings(wall_cell=0.04, far_field=1.0), conditions)
+
+
+def test_coarse_cone_is_near_the_exact_surface_pressure(cone):
+    assert cones.surface_cp(cone)[0] == pytest.approx(0.28427, rel=0.04)
+
+
+def test_coarse_cone_sideslip_mirrors_incidence(cone):
+    """A cone knows no up: the side force in sideslip is the normal force at incidence with the sign turned."""
+    reference = reference_of(math.pi * math.tan(math.radians(20.0)) ** 2, 1.0)
+    zero, pitch, yaw = (integrate(cone, reference).sel(part="total").isel(condition=k) for k in range(3))
+    normal, moment = float(pitch.CN - zero.CN), float(pitch.Cm - zero.Cm)
+    side = float(yaw.CY - yaw.CA * math.sin(cones.STEP))
+    assert side == pytest.approx(-normal, rel=0.02)
+    assert float(yaw.Cn) == pytest.approx(-moment, rel=0.02)
+    assert normal / cones.STEP == pytest.approx(1.6860, rel=0.08)
+
+
+def test_wall_faces_of_a_part_are_its_own(cone):
+    """The base of a cone lies at x = 1 and looks aft."""
+    base = part_of_wall(cone.mesh, "base")
+    assert base.any()
+    assert cone.mesh.wall_center[base, 0] == pytest.approx(1.0, abs=1e-9)
+    assert (cone.mesh.wall_area[base, 0] < 0.0).all()  # out of the fluid, into the body
+
+
+def test_finer_walls_for_thin_shock_layers():
+    assert cones.wall_cell(10.0, math.radians(10.0), True) < cones.wall_cell(3.0, math.radians(10.0), True)
+    assert cones.wall_cell(1.5, math.radians(10.0), True) == 1.0 / 80
+
+
+class TestMomentCenterFit:
+    """The fit recovers a moment centre that was moved on purpose."""
+
+    @pytest.fixture
+    def clean(self):
+        import xarray as xr
+
+        count = len(horus.MACHS) * len(horus.ALPHAS_DEG)
+        rng = np.random.default_rng(1)
+        normal, axial = np.linspace(0.0, 0.7, count), 0.1 + 0.02 * rng.random(count)
+        table = horus_tables.base("Cm")
+        published = np.array([table.at(mach, alpha) for mach in horus.MACHS for alpha in horus.ALPHAS_DEG])
+        moved = published - (normal * 1.5 - axial * 0.4) / 23.0
+        data = {name: ("condition", value) for name, value in (("CN", normal), ("CA", axial), ("Cm", moved))}
+        return xr.Dataset(data, attrs={"c_ref_m": 23.0, "moment_center_m": [13.0, 0.0, 0.2]})
+
+    def test_recovers_the_shift(self, clean):
+        fit = horus.fit_moment_center(clean)
+        assert (fit.x, fit.z) == (pytest.approx(14.5), pytest.approx(0.6))
+        assert fit.after < 1e-12 < fit.before
+
+    def test_one_coordinate_only(self, clean):
+        fit = horus.fit_moment_center(clean, "x")
+        assert fit.z == 0.2 and 0.0 < fit.after < fit.before
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("case", validation.CASES)
+def test_every_judged_row_on_fine_meshes(case):
+    """Cones: surface Cp within 2 %; sphere: stagnation Cp within 3 %, C_D below 0.02 at Mach 0.5; and so on."""
+    outside = [record for record in validation.run([case]) if record.gate and not record.within]
+    assert not outside, "\n".join(
+        f"{r.quantity}, {r.condition}: {r.computed} instead of {r.published}, band {r.band}" for r in outside
+    )
