@@ -79,35 +79,78 @@ def _merge(volume, limit, first, start, target, size):
     return root
 
 
-def combine_faces(faces: np.ndarray, area: np.ndarray, center: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+@njit(cache=True)
+def combine_faces(faces, area, center, cells):
     """Turn faces to point from the lower to the higher cell, order them by cells and add up duplicates.
 
-    Faces inside one cell are dropped. Centroids are weighted by area.
+    Faces inside one cell, and those with a cell number below 0, are dropped. Centroids are weighted by area.
 
     Args:
         faces: [face, 2] cells; area: [face, xyz] from the first to the second; center: [face, xyz].
+        cells: number of cells.
 
     Returns:
         faces [face, 2] int32, area and center of the combined faces.
     """
-    kept = np.flatnonzero(faces[:, 0] != faces[:, 1])
-    faces = faces[kept].astype(np.int64)
-    flip = faces[:, 0] > faces[:, 1]
-    key = np.where(flip, (faces[:, 1] << 32) + faces[:, 0], (faces[:, 0] << 32) + faces[:, 1])
-    order = np.argsort(key, kind="stable")
-    key = key[order]
-    kept = kept[order]
-    first = np.flatnonzero(np.concatenate([[True], key[1:] != key[:-1]]))
-    vectors = np.where(flip[order, None], -area[kept], area[kept])
-    middle = center[kept]
-    if len(first) < len(key):
-        weight = np.linalg.norm(vectors, axis=1) + 1e-300
-        combined = np.add.reduceat(middle * weight[:, None], first) / np.add.reduceat(weight, first)[:, None]
-        alone = np.diff(np.concatenate([first, [len(key)]])) == 1
-        combined[alone] = middle[first[alone]]
-        vectors, middle = np.add.reduceat(vectors, first), combined
-    key = key[first]
-    return np.stack([key >> 32, key & 0xFFFFFFFF], axis=1).astype(np.int32), vectors, middle
+    start = np.zeros(cells + 1, np.int64)
+    for f in range(len(faces)):
+        if faces[f, 0] >= 0 and faces[f, 1] >= 0 and faces[f, 0] != faces[f, 1]:
+            start[min(faces[f, 0], faces[f, 1]) + 1] += 1
+    for c in range(cells):
+        start[c + 1] += start[c]
+    fill = start[:-1].copy()
+    listed = np.empty(start[cells], np.int64)
+    for f in range(len(faces)):
+        if faces[f, 0] >= 0 and faces[f, 1] >= 0 and faces[f, 0] != faces[f, 1]:
+            low = min(faces[f, 0], faces[f, 1])
+            high = max(faces[f, 0], faces[f, 1])
+            # insertion sort by the higher cell: a cell has few faces
+            at = fill[low]
+            while at > start[low] and max(faces[listed[at - 1], 0], faces[listed[at - 1], 1]) > high:
+                listed[at] = listed[at - 1]
+                at -= 1
+            listed[at] = f
+            fill[low] += 1
+    pairs = np.empty((len(listed), 2), np.int32)
+    vectors = np.zeros((len(listed), 3))
+    middle = np.zeros((len(listed), 3))
+    n = 0
+    for c in range(cells):
+        at = start[c]
+        while at < start[c + 1]:
+            f = listed[at]
+            high = max(faces[f, 0], faces[f, 1])
+            pairs[n, 0] = c
+            pairs[n, 1] = high
+            total = 0.0
+            begin = at
+            while at < start[c + 1] and max(faces[listed[at], 0], faces[listed[at], 1]) == high:
+                g = listed[at]
+                sign = 1.0 if faces[g, 0] == c else -1.0
+                size = abs(area[g, 0]) + abs(area[g, 1]) + abs(area[g, 2]) + 1e-300
+                total += size
+                for d in range(3):
+                    vectors[n, d] += sign * area[g, d]
+                    middle[n, d] += size * center[g, d]
+                at += 1
+            for d in range(3):
+                middle[n, d] = center[f, d] if at == begin + 1 else middle[n, d] / total
+            n += 1
+    return pairs[:n].copy(), vectors[:n].copy(), middle[:n].copy()
+
+
+@njit(cache=True)
+def outward_sums(cells, faces, area, far_cell, far_area):
+    """[cell, xyz] sum of the outward area vectors of each cell's interior and far-field faces."""
+    total = np.zeros((cells, 3))
+    for f in range(len(faces)):
+        for d in range(3):
+            total[faces[f, 0], d] += area[f, d]
+            total[faces[f, 1], d] -= area[f, d]
+    for f in range(len(far_cell)):
+        for d in range(3):
+            total[far_cell[f], d] += far_area[f, d]
+    return total
 
 
 def morton_order(place: np.ndarray) -> np.ndarray:

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
-from spaceplane.mesh.agglomerate import combine_faces, merge_small, morton_order
+from spaceplane.mesh.agglomerate import combine_faces, merge_small, morton_order, outward_sums
 from spaceplane.mesh.cutcells import CutCells
 from spaceplane.mesh.mesh import Mesh
 from spaceplane.mesh.octree import Leaves
@@ -212,22 +212,12 @@ def finish(
     volume = np.bincount(index, a.volume[inside], minlength=n)
     center = np.stack([np.bincount(index, a.volume[inside] * x, minlength=n) for x in a.center[inside].T], axis=1)
     center /= volume[:, None]
-    ends = number[a.faces]
-    real = (ends >= 0).all(axis=1)
-    faces, area, face_center = combine_faces(ends[real], a.face_area[real], a.face_center[real])
+    faces, area, face_center = combine_faces(number[a.faces], a.face_area, a.face_center, n)
     far_cell = number[a.far_cell]
     wall = number[a.polygon_cell] >= 0
     walls = _walls(a, number[a.polygon_cell], wall, len(part_names))
     wall_cell = walls[0]
-    total = np.stack(
-        [
-            np.bincount(faces[:, 0], area[:, d], minlength=n)
-            - np.bincount(faces[:, 1], area[:, d], minlength=n)
-            + np.bincount(far_cell, a.far_area[:, d], minlength=n)
-            for d in range(3)
-        ],
-        axis=1,
-    )
+    total = outward_sums(n, faces, area, far_cell, a.far_area)
     mesh = Mesh(
         cell_volume=volume * cell**3,
         cell_center=corner + center * cell,

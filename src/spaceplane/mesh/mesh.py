@@ -62,9 +62,14 @@ class Mesh:
 
     def closure(self) -> np.ndarray:
         """[cell, xyz] sum of outward area vectors of each cell, m2: zero to round-off on a closed mesh."""
+        outward = (
+            (self.face_cells[:, 0], self.face_area),
+            (self.face_cells[:, 1], -self.face_area),
+            (self.wall_cell, self.wall_area),
+            (self.far_cell, self.far_area),
+        )
         total = np.zeros((self.cells, 3))
-        np.add.at(total, self.face_cells[:, 0], self.face_area)
-        np.add.at(total, self.face_cells[:, 1], -self.face_area)
-        np.add.at(total, self.wall_cell, self.wall_area)
-        np.add.at(total, self.far_cell, self.far_area)
+        for cell, area in outward:
+            for axis in range(3):
+                total[:, axis] += np.bincount(cell, area[:, axis], minlength=self.cells)
         return total
