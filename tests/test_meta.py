@@ -4,6 +4,7 @@ import ast
 import re
 import subprocess
 import sys
+import tomllib
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -164,6 +165,34 @@ def test_quantities_carry_units():
             if not UNITS.search(text) and not all(named.search(arg) for arg in floats):
                 wanting.append(name)
     assert not wanting, "\n".join(wanting)
+
+
+# Distribution name -> the module it brings, where they differ; netCDF4 is named as xarray's engine, not imported.
+MODULE_OF = {"pyyaml": "yaml", "pillow": "PIL", "netcdf4": "netCDF4"}
+BROUGHT = {"vtkmodules": "pyvista", "vtk": "pyvista", "markupsafe": "jinja2", "mpl_toolkits": "matplotlib"}
+
+
+def test_dependencies_are_those_imported():
+    """Every run-time dependency is used, and everything used is declared."""
+    project = tomllib.loads((SOURCE.parents[1] / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    bare = lambda text: re.split(r"[<>=!~\[; ]", text, maxsplit=1)[0].lower()  # noqa: E731
+    declared = {MODULE_OF.get(bare(text), bare(text)) for text in project["dependencies"]}
+    optional = {"OCP"}  # the `step` extra
+    used = {
+        name.partition(".")[0]
+        for tree in TREES.values()
+        for node in ast.walk(tree)
+        for name in (
+            [alias.name for alias in node.names]
+            if isinstance(node, ast.Import)
+            else [node.module or ""]
+            if isinstance(node, ast.ImportFrom) and not node.level
+            else []
+        )
+    }
+    used = {BROUGHT.get(name, name) for name in used} - set(sys.stdlib_module_names) - {"spaceplane", "__future__", ""}
+    assert used - optional <= declared, f"not declared: {used - optional - declared}"
+    assert declared - {"netCDF4"} <= used, f"declared but never imported: {declared - {'netCDF4'} - used}"
 
 
 def test_shape_parameters_are_complete():
