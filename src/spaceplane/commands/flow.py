@@ -50,6 +50,10 @@ def flow(
     ] = "0,0,0",
     cell: options.Cell = None,
     cells: options.Cells = None,
+    domain: Annotated[
+        str | None,
+        typer.Option("--domain", metavar="x,y,z,x,y,z", help="Lower and upper corner of the air to mesh, metres."),
+    ] = None,
     precision: options.Precision = "fp32",
     json_file: options.JsonFile = None,
     vtu: Annotated[Path | None, typer.Option("--vtu", metavar="FILE", help="Write the flow for ParaView.")] = None,
@@ -79,7 +83,9 @@ def flow(
     from spaceplane.mesh.settings import MeshSettings
     from spaceplane.vehicle.properties import ReferenceLengths
 
-    mesh = options.mesh_settings(cell, cells, replace(MeshSettings(), target_cells=200_000))
+    corners = None if domain is None else numbers("--domain", domain, "m", 6)
+    default = MeshSettings(target_cells=200_000, domain=corners and (tuple(corners[:3]), tuple(corners[3:])))
+    mesh = options.mesh_settings(cell, cells, default)
     settings = replace(FlowSettings(), precision=solver_precision)
     reference = ReferenceLengths(**lengths, moment_center=center)
     from spaceplane.vehicle.stl import read_stl

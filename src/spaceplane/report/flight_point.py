@@ -153,7 +153,7 @@ def _mode(mode: dict) -> dict:
         "period": duration(mode.get("period_s")),
         "time": time_text(mode),
         "damping": number(mode.get("damping_ratio"), 3),
-        "frequency": number(mode.get("natural_frequency_rads"), 3),
+        "frequency": number(mode.get("natural_frequency_rads") if mode["eigenvalue"][1] else None, 3),
         "explanation": mode.get("explanation") or "",
     }
 
@@ -164,28 +164,27 @@ def _eigenvectors(p: dict, modes: list[dict]) -> dict:
     for mode in modes:
         vector = mode.get("eigenvector") or {}
         participation = mode.get("participation") or {}
-        largest = max((entry["magnitude"] for entry in vector.values() if is_number(entry.get("magnitude"))), default=0)
+        most = max((share for share in participation.values() if is_number(share)), default=0.0)
         cells = []
         for state in states:
-            entry, share = vector.get(state) or {}, participation.get(state)
+            entry, share = vector.get(state) or {}, participation.get(state) or 0.0
             magnitude, phase = entry.get("magnitude"), entry.get("phase_deg")
-            visible = is_number(magnitude) and largest > 0 and magnitude > 0.005 * largest
-            share_text = f", participation {number(share, 3)}" if is_number(share) else ""
+            visible = most > 0 and share > 0.02 and is_number(phase)
             cells.append(
                 {
-                    "clock": Markup(phase_clock(magnitude / largest, phase or 0.0)) if visible else "",
+                    "clock": Markup(phase_clock(share / most, phase)) if visible else "",
                     "magnitude": number(magnitude, 3),
-                    "phase": f"{fixed(phase, 0)}°" if visible and is_number(phase) else "",
-                    "heat": f"{0.30 * min(abs(share), 1.0):.3f}" if is_number(share) else "0",
-                    "title": f"{STATES.get(state, state)}: {number(magnitude, 4)} at {fixed(phase, 1)}°{share_text}",
+                    "phase": f"{fixed(phase, 0)}°" if is_number(phase) else "",
+                    "heat": f"{0.34 * min(share, 1.0):.3f}",
+                    "title": f"{STATES.get(state, (state, ''))[0]}: {number(magnitude, 4)} at {fixed(phase, 1)}°, "
+                    f"participation {fixed(100 * share, 1)} %",
                 }
             )
         rows.append({"name": mode["name"], "grows": mode["eigenvalue"][0] > 0, "cells": cells})
     shown = any(mode.get("eigenvector") for mode in modes)
     return {
-        "states": [(GREEK.get(s, s), STATES.get(s, s)) for s in states],
+        "states": [(GREEK.get(s, s), *STATES.get(s, (s, ""))) for s in states],
         "eigenvectors": rows if shown else [],
-        "eigenvector_note": "",
     }
 
 

@@ -25,16 +25,17 @@ COEFFICIENTS = {
 # physics: C_m_alpha < 0, C_n_beta > 0, C_l_beta < 0 and C_Y_beta < 0 are the stable signs.
 STABLE_SIGN = {"Cm_alpha": -1, "Cn_beta": 1, "Cl_beta": -1, "CY_beta": -1, "CL_alpha": 1}
 
+# State of the linear model: what it is and its unit.
 STATES = {
-    "V": "speed",
-    "gamma": "flight-path angle",
-    "R": "radius",
-    "p": "roll rate",
-    "q": "pitch rate",
-    "r": "yaw rate",
-    "alpha": "angle of attack",
-    "beta": "sideslip",
-    "sigma": "bank angle",
+    "V": ("speed", "m/s"),
+    "gamma": ("flight-path angle", "rad"),
+    "R": ("radius", "m"),
+    "p": ("roll rate", "rad/s"),
+    "q": ("pitch rate", "rad/s"),
+    "r": ("yaw rate", "rad/s"),
+    "alpha": ("angle of attack", "rad"),
+    "beta": ("sideslip", "rad"),
+    "sigma": ("bank angle", "rad"),
 }
 
 _VARIABLES = {"alpha": "α", "beta": "β", "M": "M", "mach": "M", "p": "p", "q": "q", "r": "r"}

@@ -90,7 +90,7 @@ def duration(seconds: float | None) -> str:
     if not is_number(seconds):
         return MISSING
     if abs(seconds) < 10:
-        return f"{_signed(f'{seconds:.3g}')} s"
+        return f"{number(seconds, 3)} s"
     if abs(seconds) < 120:
         return f"{_signed(f'{seconds:.0f}')} s"
     if abs(seconds) > LONG:

@@ -52,7 +52,7 @@ def stills(
 
 
 def _draw_numbers(flat: np.ndarray) -> np.ndarray:
-    """[row, column] index of the triangle seen at each pixel, -1 for none; `flat` is [triangle, corner, (right, up)]."""
+    """[row, column] triangle seen at each pixel, -1 for none; `flat` is [triangle, corner, (right, up)]."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.collections import PolyCollection
     from matplotlib.figure import Figure

@@ -49,7 +49,7 @@ def _linear_width(modes: list[dict]) -> float:
 
 
 def _plane(modes: list[dict], linear_width: float | None, caption: str) -> str:
-    width, height, left, top = 560.0, 380.0, 68.0, 12.0
+    width, height, left, top = 560.0, 390.0, 68.0, 24.0
     reals = [m["eigenvalue"][0] for m in modes]
     largest_imaginary = max(max(abs(m["eigenvalue"][1]) for m in modes), 0.25 * max(map(abs, reals)), 1e-6)
     if linear_width is None:
@@ -68,8 +68,8 @@ def _plane(modes: list[dict], linear_width: float | None, caption: str) -> str:
         frame.axes("real part, 1/s", "imaginary part, rad/s", 6, 6),
         f'<line class="zero" x1="{zero:.1f}" x2="{zero:.1f}" y1="{top}" y2="{bottom}"/>',
         f'<line class="zero" x1="{left}" x2="{right}" y1="{frame.y(0):.1f}" y2="{frame.y(0):.1f}"/>',
-        f'<text class="half-name" x="{right - 8}" y="{top + 16}" text-anchor="end">grows</text>',
-        f'<text class="half-name decays" x="{left + 8}" y="{top + 16}">decays</text>',
+        f'<text class="half-name" x="{right}" y="{top - 8}" text-anchor="end">grows</text>',
+        f'<text class="half-name decays" x="{left}" y="{top - 8}">decays</text>',
     ]
     marks = [
         (frame.x(mode["eigenvalue"][0]), frame.y(part), index, mode)

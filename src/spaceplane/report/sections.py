@@ -32,6 +32,7 @@ FLIGHT_ROWS = (
 RATES = (("Roll rate", "p_rads"), ("Pitch rate", "q_rads"), ("Yaw rate", "r_rads"))
 VARIABLE_GROUPS = (("alpha", "Angle of attack"), ("beta", "Sideslip"), ("M", "Mach number"), ("mach", "Mach number"))
 UNITS = {"1/rad": "per rad", "1": "per unit Mach", "": "per unit Mach"}
+PRECISIONS = {"single": "fp32", "double": "fp64"}
 MESH_ROWS = (
     ("Cells", "cells"),
     ("Split cells", "split_cells"),
@@ -117,7 +118,7 @@ def _chips(result: dict) -> list[tuple[str, str]]:
         chips.append(("", f"{grouped(cells)} cells"))
     solver = result.get("solver") or {}
     if solver.get("precision"):
-        chips.append(("", str(solver["precision"])))
+        chips.append(("", PRECISIONS.get(solver["precision"], str(solver["precision"]))))
     total = total_seconds(result)
     if total:
         chips.append(("", f"computed in {duration(total)}"))
@@ -125,10 +126,18 @@ def _chips(result: dict) -> list[tuple[str, str]]:
 
 
 def total_seconds(result: dict) -> float | None:
-    """Seconds of mesh and flow together, as far as recorded."""
-    parts = [(result.get("mesh") or {}).get("seconds"), (result.get("solver") or {}).get("seconds")]
-    known = [s for s in parts if is_number(s)]
-    return sum(known) if known else None
+    """Seconds of all recorded phases together."""
+    phases = seconds_by_phase(result)
+    return sum(phases.values()) if phases else None
+
+
+def seconds_by_phase(result: dict) -> dict[str, float]:
+    """Wall time of each phase of the analysis, s."""
+    solver, mesh = result.get("solver") or {}, result.get("mesh") or {}
+    phases = dict(solver.get("seconds_by_phase") or {"flow": solver.get("seconds")})
+    if "mesh" not in phases:
+        phases = {"mesh": mesh.get("seconds")} | phases
+    return {name: value for name, value in phases.items() if is_number(value)}
 
 
 def _flight_rows(points: list[dict]) -> list[dict]:
@@ -219,12 +228,8 @@ def _mesh_rows(result: dict) -> list[tuple[str, str]]:
 
 
 def _time_rows(result: dict) -> list[tuple[str, str, float]]:
-    solver = result.get("solver") or {}
-    phases = {"mesh": (result.get("mesh") or {}).get("seconds")} | (solver.get("seconds_by_phase") or {})
-    if not any(is_number(v) for k, v in phases.items() if k != "mesh"):
-        phases["flow"] = solver.get("seconds")
-    phases = {k: v for k, v in phases.items() if is_number(v)}
-    largest = max(phases.values(), default=1.0) or 1.0
+    phases = seconds_by_phase(result)
+    largest = max(phases.values(), default=0.0) or 1.0
     return [(words(k).capitalize(), duration(v), round(100 * v / largest, 1)) for k, v in phases.items()]
 
 
