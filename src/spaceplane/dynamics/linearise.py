@@ -174,7 +174,10 @@ def _moment_rows(
 
 
 def numerical(model: FlightModel, step: float = 1e-30) -> StateSpace:
-    """Linearisation of the nonlinear equations by the complex step, free of subtraction (Squire and Trapp 1998)."""
+    """Linearisation of the nonlinear equations by the complex step, free of subtraction (Squire and Trapp 1998).
+
+    `step` is in the SI unit of each state.
+    """
     n, m = len(STATES), len(model.inputs)
     start = np.concatenate([model.reference_state(), np.zeros(m)]).astype(complex)
     jacobian = np.zeros((n, n + m))

@@ -92,7 +92,7 @@ def subdivide(points: np.ndarray, triangles: np.ndarray, right_of: float | None 
     Args:
         points: [vertex, xyz] in wall cells.
         triangles: [triangle, 3] vertex indices, counter-clockwise seen from the air.
-        right_of: leave out triangles that have no vertex with y at or above this plane.
+        right_of: leave out triangles that have no vertex with y at or above this plane (in wall cells, a number).
 
     Raises:
         InputError: the surface is not closed.

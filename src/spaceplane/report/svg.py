@@ -84,9 +84,11 @@ class Frame:
     y_scale: Scale
 
     def x(self, value: float) -> float:
+        """Pixel position of a value across."""
         return self.left + self.width * self.x_scale(value)
 
     def y(self, value: float) -> float:
+        """Pixel position of a value, downwards."""
         return self.top + self.height * (1.0 - self.y_scale(value))
 
     def _labelled(self, ticks: list[float], along: float, scale: Scale, room: float) -> set[float]:

@@ -70,6 +70,7 @@ class Layout:
 
     @property
     def z_keel(self) -> float:
+        """Height of the keel, m."""
         return -KEEL_DEPTH
 
     @property
@@ -125,6 +126,7 @@ class Layout:
 
     @property
     def q_tip(self) -> float:
+        """Distance of the winglet's tip from the chine along panel and winglet, m."""
         return self.panel_length + self.shape.winglet_length_m
 
     @cached_property

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+from spaceplane.vehicle.appearance import VIEWS, part_colour
 from spaceplane.vehicle.surface import Surface
 
 CREASE_DEG = 25.0  # neighbouring triangles that meet at more than this are shaded as a sharp edge
@@ -18,12 +19,10 @@ def draw(pyvista, surface: Surface, path: Path, views: tuple[str, ...], size: tu
         pyvista: the module, imported by the caller.
         surface: what to draw.
         path: the file.
-        views: names from `export.VIEWS`.
+        views: names from `appearance.VIEWS`.
         size: width and height, pixels.
     """
     from vtkmodules.vtkCommonCore import vtkObject
-
-    from spaceplane.vehicle.export import VIEWS, part_colour
 
     columns = 1 if len(views) == 1 else 2
     rows = -(-len(views) // columns)

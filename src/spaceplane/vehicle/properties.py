@@ -116,5 +116,5 @@ def scaled_reference(
     station: float = MOMENT_CENTER_STATION,
     height: float = MOMENT_CENTER_HEIGHT,
 ) -> ReferenceLengths:
-    """Reference lengths of a changed shape: area, chord and span stay, the moment centre moves."""
+    """Reference lengths of a changed shape: area, chord and span stay, the moment centre (m) moves."""
     return replace(base, moment_center=scaled_moment_center(shape, station, height))
