@@ -13,6 +13,7 @@ from spaceplane.errors import InputError
 from spaceplane.vehicle.appearance import VIEWS, part_colour
 from spaceplane.vehicle.surface import Surface
 
+
 def prepare_output(path: str | Path, suffix: str) -> Path:
     """Make the parent folder and check that a file can be written there.
 
@@ -112,7 +113,6 @@ def write_glb(surface: Surface, path: str | Path) -> Path:
         + bytes(blob)
     )
     return path
-
 
 
 DEFAULT_VIEWS = ("perspective", "top", "side", "front")
