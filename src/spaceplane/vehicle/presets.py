@@ -18,7 +18,7 @@ from spaceplane.vehicle.properties import (
     ReferenceLengths,
     scaled_reference,
 )
-from spaceplane.vehicle.shape import ShapeParameters, unknown_name
+from spaceplane.vehicle.shape import ShapeParameters, finite_number, unknown_name
 
 OPTIMISED_SHAPE: dict[str, float] = {
     "winglet_length_m": 4.0,
@@ -116,7 +116,7 @@ def load(
     reference = content.reference.model_dump(exclude_none=True)
     for key in ("moment_center_station_m", "moment_center_height_m"):
         if key in overrides:
-            reference[key] = _ReferenceSection.model_validate({key: overrides.pop(key)}).model_dump()[key]
+            reference[key] = finite_number(key, overrides.pop(key))
     shape = ShapeParameters.create(_PRESET_SHAPES[content.base] | content.shape | overrides, allow_outside)
     station = reference.get("moment_center_station_m", MOMENT_CENTER_STATION)
     height = reference.get("moment_center_height_m", MOMENT_CENTER_HEIGHT)
