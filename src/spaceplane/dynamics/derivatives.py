@@ -110,6 +110,12 @@ def per_radian(values: Mapping[str, float]) -> dict[str, float]:
     return {name: value * factor if is_per_angle(name) else value for name, value in values.items()}
 
 
+def per_degree(values: Mapping[str, float]) -> dict[str, float]:
+    """Per-radian values turned into per-degree ones; the inverse of `per_radian`."""
+    factor = math.pi / 180.0
+    return {name: value * factor if is_per_angle(name) else value for name, value in values.items()}
+
+
 def is_per_angle(name: str) -> bool:
     """Whether a derivative is taken with an angle (alpha, beta or a deflection)."""
     return not (name.endswith("_M") or name in DAMPING)

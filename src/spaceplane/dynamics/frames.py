@@ -35,13 +35,13 @@ def turn_x(angle: float) -> np.ndarray:
 
 
 def turn_y(angle: float) -> np.ndarray:
-    """[3, 3] the same about y; `angle` in rad."""
+    """[3, 3] components in axes turned by `angle`, rad, right-handed about y."""
     c, s = np.cos(angle), np.sin(angle)
     return np.array([[c, 0.0, -s], [0.0, 1.0, 0.0], [s, 0.0, c]])
 
 
 def turn_z(angle: float) -> np.ndarray:
-    """[3, 3] the same about z; `angle` in rad."""
+    """[3, 3] components in axes turned by `angle`, rad, right-handed about z."""
     c, s = np.cos(angle), np.sin(angle)
     return np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
 
