@@ -235,8 +235,8 @@ def longitudinal_table() -> str:
 def needed_pitch_stiffness(entry: dict) -> float:
     """C_m_alpha, per the unit that was put into the equations, that three printed eigenvalues need.
 
-    Speed, angle of attack and pitch rate give s^3 - a_q,alpha s + c = 0 when the small dampings are left out, so the sum
-    of the products of the eigenvalues by pairs is -a_q,alpha = -C_m_alpha q S c / I_yy.
+    Speed, angle of attack and pitch rate give s^3 - a_q,alpha s + c = 0 when the small dampings are left out, so the
+    sum of the products of the eigenvalues by pairs is -a_q,alpha = -C_m_alpha q S c / I_yy.
     """
     roots = [complex(*root) for root in entry["longitudinal"]]
     roots += [root.conjugate() for root in roots if root.imag]
