@@ -17,7 +17,8 @@ from spaceplane.validation.records import Record
 from spaceplane.vehicle.properties import MassProperties, ReferenceLengths
 
 CASE = "dynamics"
-HEFFLEY = "Franklin, Powell and Emami-Naeini, Feedback Control of Dynamic Systems, after Heffley and Jewell (1972)"ETKIN = "Etkin and Reid, Dynamics of Flight, 3rd ed. (1996), chapter 6"
+HEFFLEY = "Franklin, Powell and Emami-Naeini, Feedback Control of Dynamic Systems, after Heffley and Jewell (1972)"
+ETKIN = "Etkin and Reid, Dynamics of Flight, 3rd ed. (1996), chapter 6"
 MOOIJ = "Mooij (2015), as quoted in Table 6.2 of Reijne (2022)"
 REIJNE = "Reijne (2022), Table 6.3"
 
