@@ -49,7 +49,7 @@ def analysis():
         patch.setattr(bodies, "solve", newtonian())
         heard = []
         found = analyse(horus_2b(), SETTINGS, lambda *told: heard.append(told))
-    assert {told[0] for told in heard} >= {"base: mesh", "elevon_left +5 deg: mesh", "flight dynamics"}
+    assert {told[0] for told in heard} >= {"base: mesh", "elevon_left +10 deg: mesh", "flight dynamics"}
     return found
 
 
@@ -82,7 +82,7 @@ def test_result_holds_the_whole_chain(written):
         assert point["coefficients"]["L_over_D"] == pytest.approx(total_ratio(point))
         labels = [row["label"] for row in point["convergence"]]
         assert labels[:6] == ["base", "alpha+", "alpha-", "mach+", "mach-", "beta"]
-        assert labels[6:] == ["elevon_left +5 deg", "rudder_left +5 deg", "body_flap +5 deg"]
+        assert labels[6:] == ["elevon_left +10 deg", "rudder_left +10 deg", "body_flap +10 deg"]
     assert math.isclose(result["flight_points"][1]["alpha_deg"], 16.6)
 
 
@@ -135,8 +135,8 @@ def test_files_read_back(written, analysis):
     database = AeroDatabase.load(paths["aero.nc"]).data
     assert list(database.point.values) == ["Mach 1.5", "Mach 2.5"]
     assert database.sizes["case"] == 12 + 3 * 2
-    moved = database.sel(case=database.label == "elevon_left +5 deg")
-    np.testing.assert_allclose(np.degrees(moved.elevon_left), -12.5)
+    moved = database.sel(case=database.label == "elevon_left +10 deg")
+    np.testing.assert_allclose(np.degrees(moved.elevon_left), -7.5)
     assert "Mach 2.5" in paths["report.html"].read_text(encoding="utf-8")
 
 

@@ -71,7 +71,7 @@ class AnalyseSettings:
     bank_deg: tuple[float, ...] | None = None
     deflections: ControlDeflections = DEFLECTIONS_TAEM
     controls: bool = True
-    control_step: float = math.radians(5.0)
+    control_step: float = math.radians(10.0)
     steps: DerivativeSteps = field(default_factory=DerivativeSteps)
     mesh: MeshSettings = field(default_factory=lambda: MeshSettings(target_cells=200_000))
     flow: FlowSettings = field(default_factory=FlowSettings)

@@ -6,7 +6,7 @@ import xarray as xr
 
 from spaceplane.aero.conditions import DerivativeSteps, plan
 from spaceplane.aero.database import AeroDatabase, SolvedCases, assemble
-from spaceplane.aero.derivatives import by_symmetry, control_derivatives, differentiate
+from spaceplane.aero.derivatives import Move, by_symmetry, control_derivatives, differentiate
 from spaceplane.aero.integrate import integrate
 from spaceplane.errors import InputError
 
@@ -29,7 +29,7 @@ def database(make_solution, box, lengths) -> AeroDatabase:
     data = integrate(make_solution(box, wavy, c.mach, c.alpha, c.beta, spread=1e-3), lengths)
     base = data.isel(condition=[p.base for p in made.points])
     moved = integrate(make_solution(box, wavy, [0.8, 2.5], 0.21, 0.0), lengths)
-    controls = control_derivatives(base, by_symmetry({"elevon_left": [(0.1, moved)]}))
+    controls = control_derivatives(by_symmetry({"elevon_left": [Move(0.1, base, moved)]}))
     slopes = xr.merge([differentiate(data, made), controls])
     blocks = [
         SolvedCases(data, made.labels, made.point, {"body_flap": -0.35}),

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from spaceplane.aero.conditions import DerivativeSteps, plan
-from spaceplane.aero.derivatives import STABILITY, by_symmetry, control_derivatives, differentiate
+from spaceplane.aero.derivatives import STABILITY, Move, by_symmetry, control_derivatives, differentiate
 from spaceplane.aero.integrate import COEFFICIENTS, integrate
 
 
@@ -137,8 +137,8 @@ def flapped(step):
 
 def control_data(make_solution, box, lengths, steps):
     base = integrate(make_solution(box, pressure, 2.0, 0.2, 0.0), lengths)
-    runs = [(d, integrate(make_solution(box, flapped(d), 2.0, 0.2, 0.0), lengths)) for d in steps]
-    return base, control_derivatives(base, by_symmetry({"elevon_left": runs}))
+    runs = [Move(d, base, integrate(make_solution(box, flapped(d), 2.0, 0.2, 0.0), lengths)) for d in steps]
+    return base, control_derivatives(by_symmetry({"elevon_left": runs}))
 
 
 def test_control_derivatives_have_the_sign_of_a_flap_down_on_the_left(make_solution, box, lengths):

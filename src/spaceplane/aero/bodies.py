@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 
 import xarray as xr
 
-from spaceplane.aero.derivatives import CONTROLS, by_symmetry, control_derivatives
+from spaceplane.aero.derivatives import CONTROLS, Move, by_symmetry, control_derivatives
 from spaceplane.aero.integrate import integrate, wetted_area
 from spaceplane.flow.settings import FlowSettings
 from spaceplane.flow.solution import ConvergenceRecord, FlowConditions, Solution
@@ -150,8 +150,8 @@ def control_runs(
 
 def slopes_of(base: xr.Dataset, runs: Sequence[ControlRun], symmetric: bool) -> xr.Dataset:
     """Control derivatives of all five surfaces from `control_runs`, dims (point, part)."""
-    moved: dict[str, list] = {}
+    moves: dict[str, list[Move]] = {}
     for run in runs:
-        moved.setdefault(run.surface, []).append((run.step, run.coefficients))
-    complete = by_symmetry(moved) if symmetric else moved
-    return control_derivatives(base, {name: complete[name] for name in CONTROLS})
+        moves.setdefault(run.surface, []).append(Move(run.step, base, run.coefficients))
+    complete = by_symmetry(moves) if symmetric else moves
+    return control_derivatives({name: complete[name] for name in CONTROLS})

@@ -112,46 +112,61 @@ def _curvature(value: np.ndarray, flipped: np.ndarray, point: PointPlan, variati
     return abs(value[variation.plus, 0] - 2.0 * value[point.base, 0] + minus) / (2.0 * variation.step)
 
 
-def control_derivatives(base: xr.Dataset, moved: Mapping[str, Sequence[tuple[float, xr.Dataset]]]) -> xr.Dataset:
+@dataclass(frozen=True)
+class Move:
+    """Coefficients of two bodies that differ in the deflection of one control surface.
+
+    Attributes:
+        step: difference in deflection, rad.
+        base: coefficients of the base body, one condition per flight point.
+        moved: coefficients at the same conditions with the surface moved by the step.
+    """
+
+    step: float
+    base: xr.Dataset
+    moved: xr.Dataset
+
+
+def control_derivatives(moves: Mapping[str, Sequence[Move]]) -> xr.Dataset:
     """Derivatives with respect to each control surface, per rad, at each flight point.
 
     Args:
-        base: coefficients of the base body, one condition per flight point.
-        moved: per control surface (step in rad, coefficients of the body with that surface moved by it at the same
-            conditions), the full step first and then, if at all, the half one.
+        moves: per control surface the move by the full step and then, if at all, that by the half one.
 
     Returns:
         Dataset like that of `differentiate`, with names such as Cm_elevon_left.
     """
     slopes = {}
-    for surface, runs in moved.items():
+    source = None
+    for surface, runs in moves.items():
+        source = runs[0].base
         for coefficient in CONTROL_COEFFICIENTS:
             slopes[f"{coefficient}_{surface}"] = [
-                _one_sided(base, runs, coefficient, point) for point in range(base.sizes["condition"])
+                _one_sided(runs, coefficient, point) for point in range(source.sizes["condition"])
             ]
-    return _dataset(slopes, base, dict.fromkeys(slopes, "deflection"))
+    return _dataset(slopes, source, dict.fromkeys(slopes, "deflection"))
 
 
-def _one_sided(base: xr.Dataset, runs: Sequence[tuple[float, xr.Dataset]], coefficient: str, point: int) -> Slope:
+def _one_sided(runs: Sequence[Move], coefficient: str, point: int) -> Slope:
     spread = f"{coefficient}_spread"
-    quotients = [(d[coefficient].values[point] - base[coefficient].values[point]) / step for step, d in runs]
-    noises = [(d[spread].values[point] + base[spread].values[point]) / abs(step) for step, d in runs]
-    status = worst([base.verdict.values[point], *(d.verdict.values[point] for _, d in runs)])
+    quotients = [(m.moved[coefficient].values[point] - m.base[coefficient].values[point]) / m.step for m in runs]
+    noises = [float(m.moved[spread][point] + m.base[spread][point]) / abs(m.step) for m in runs]
+    status = worst([data.verdict.values[point] for m in runs for data in (m.base, m.moved)])
     if len(runs) == 1:
-        return Slope(quotients[0], noises[0], runs[0][0], status)
+        return Slope(quotients[0], noises[0], runs[0].step, status)
     full, half = quotients
     error = abs(half[0] - full[0]) + 2.0 * noises[1] + noises[0]
-    return Slope(2.0 * half - full, error, runs[0][0], status)
+    return Slope(2.0 * half - full, error, runs[0].step, status)
 
 
-def by_symmetry(moved: Mapping[str, Sequence[tuple[float, xr.Dataset]]]) -> dict:
-    """Runs of the surfaces on the other side, mirrored from those at hand (symmetric base, zero sideslip only)."""
+def by_symmetry(moves: Mapping[str, Sequence[Move]]) -> dict[str, list[Move]]:
+    """Moves of the surfaces on the other side as well, mirrored (symmetric base body, zero sideslip only)."""
     result = {}
-    for surface, runs in moved.items():
+    for surface, runs in moves.items():
         result[surface] = list(runs)
         other = mirrored_name(surface)
-        if other not in moved:
-            result[other] = [(step, mirrored(data)) for step, data in runs]
+        if other not in moves:
+            result[other] = [Move(m.step, mirrored(m.base), mirrored(m.moved)) for m in runs]
     return result
 
 
