@@ -89,6 +89,7 @@ def test_relative_percent_difference_is_bounded_and_antisymmetric():
 def test_failed_flows_are_marked_and_not_compared_with_the_thesis(quick, tmp_path):
     found = run(tmp_path, evaluate=failing)
     assert {row.flow for row in found.rows} == {"failed"} and found.agreement == ()
+    assert found.warnings[0] == "default, Mach 0.8: base failed" and len(found.warnings) == 7 * 3
 
 
 def test_a_case_that_breaks_is_reported_and_the_others_kept(quick, tmp_path):

@@ -62,6 +62,6 @@ def _computed(folder: Path, workers: int) -> dict:
     with progress_bar() as tell:
 
         def on_change(p) -> None:
-            tell(f"{p.done} of {p.total} shapes: {', '.join(p.running)}", p.done / max(p.total, 1))
+            tell(f"{p.done} of {p.total} shapes: {', '.join(p.running)}", p.fraction)
 
         return default_against_optimised(folder / "store.sqlite", on_change, workers)

@@ -61,7 +61,7 @@ def sensitivity(
 
         def on_change(p) -> None:
             left = "" if p.remaining_s is None else f", about {p.remaining_s / 60:.0f} min left"
-            tell(f"{p.done} of {p.total} shapes ({p.reused} from the store){left}", p.done / max(p.total, 1))
+            tell(f"{p.done} of {p.total} shapes ({p.reused} from the store){left}", p.fraction)
 
         found = study.run(asked, store_path, out, on_change, workers, plots=plots)
     if json_file is not None:
@@ -72,6 +72,9 @@ def sensitivity(
         typer.echo(f"{found.computed} shapes computed, {found.reused} from the store, {found.seconds:.0f} s")
         for name, path in found.files.items():
             typer.echo(f"{name}: {path}")
+    for warning in found.warnings:
+        typer.echo(f"warning: {warning}", err=True)
     for failure in found.failures:
         typer.echo(f"not good: {failure.label}: {failure.reason}", err=True)
-    return 1 if found.failures else 0
+    flows_failed = any(row.flow == "failed" for row in found.rows)
+    return 1 if found.failures or flows_failed else 0

@@ -13,6 +13,7 @@ from spaceplane.study.changes import level_number, worst_flow
 from spaceplane.study.execute import Case, Evaluate, Progress, execute
 from spaceplane.study.matching import match_modes
 from spaceplane.study.shapes import case_inputs, evaluate, with_one_wall_cell
+from spaceplane.study.store import ResultStore
 
 SCHEMA = "spaceplane.comparison"
 SCHEMA_VERSION = 1
@@ -58,6 +59,7 @@ def default_against_optimised(
     """
     from spaceplane.vehicle.presets import OPTIMISED_SHAPE
 
+    ResultStore(store_path).close()  # a store that cannot be used is told before anything is meshed
     settings = with_one_wall_cell(vehicle, {}, settings or {})
     cases = [
         Case(label, case_inputs(vehicle, changes, mach, settings))

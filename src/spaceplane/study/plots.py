@@ -95,14 +95,14 @@ def derivative_bars(rows: tuple[Change, ...], mach: float, parameters: tuple[str
     """
     import matplotlib.pyplot as plt
 
-    height = 1.25 * len(parameters) + 1.0
+    height = 1.25 * len(parameters) + 1.2
     figure, axes = plt.subplots(len(parameters), 1, figsize=(8.2, height), sharex=True, squeeze=False)
     chosen = {(row.parameter, row.side, row.quantity): row for row in rows if row.mach == mach}
     for ax, parameter in zip(axes[:, 0], parameters, strict=True):
         _parameter_panel(ax, chosen, parameter)
     ticks = [symbol(name) + (" (RPD)" if name == "Cm_alpha" else "") for name in DERIVATIVES]
     axes[-1, 0].set_xticks(range(len(DERIVATIVES)), ticks, fontsize=10)
-    figure.supylabel("change relative to the default shape, %", fontsize=9, color="#444444")
+    axes[len(parameters) // 2, 0].set_ylabel("change, %" if len(parameters) < 3 else "change from the default shape, %")
     figure.suptitle(f"Aerodynamic derivatives with shape, Mach {mach:g}", x=0.01, ha="left", fontsize=12, weight="bold")
     if any(row.noise for row in chosen.values()):
         figure.text(
@@ -114,7 +114,7 @@ def derivative_bars(rows: tuple[Change, ...], mach: float, parameters: tuple[str
 
 def _parameter_panel(ax: Axes, chosen: dict, parameter: str) -> None:
     values = {}
-    _noise_bands(ax, chosen, parameter)
+    tallest = 2.0
     for side, colour, shift in (("low", LOW, -0.2), ("high", HIGH, 0.2)):
         for place, name in enumerate(DERIVATIVES):
             row = chosen.get((parameter, side, name))
@@ -127,11 +127,14 @@ def _parameter_panel(ax: Axes, chosen: dict, parameter: str) -> None:
                 continue
             shown = max(-_GREATEST_PERCENT, min(_GREATEST_PERCENT, size))
             ax.bar(place + shift, shown, 0.38, color=colour, zorder=3)
+            tallest = max(tallest, abs(shown))
             if shown != size:
                 edge = "bottom" if size > 0 else "top"
                 ax.text(place + shift, shown, f"{size:.0f}", ha="center", va=edge, fontsize=6.5, color=colour)
     ax.axhline(0.0, color="#666666", lw=0.8, zorder=2)
-    ax.margins(y=0.2)
+    widest = _noise_bands(ax, chosen, parameter)
+    limit = 1.25 * max(tallest, min(widest, 2.0 * tallest))  # noise far above every change runs out of the panel
+    ax.set_ylim(-limit, limit)
     ax.xaxis.grid(False)
     unit = _unit(parameter)
     texts = [f"{side} {value:g} {unit}" for side, value in values.items()]
@@ -142,14 +145,17 @@ def _parameter_panel(ax: Axes, chosen: dict, parameter: str) -> None:
         )
 
 
-def _noise_bands(ax: Axes, chosen: dict, parameter: str) -> None:
-    """Shade, for each derivative, the change that a shift of the mesh alone makes."""
+def _noise_bands(ax: Axes, chosen: dict, parameter: str) -> float:
+    """Shade, for each derivative, the change that a shift of the mesh alone makes; return the greatest, %."""
+    widest = 0.0
     for place, name in enumerate(DERIVATIVES):
         row = chosen.get((parameter, "low", name)) or chosen.get((parameter, "high", name))
         if row is None or not row.noise or not row.default:
             continue
         size = min(100.0 * row.noise / abs(row.default), _GREATEST_PERCENT)
         ax.bar(place, 2 * size, 0.86, bottom=-size, color="#d5d5d5", zorder=1)
+        widest = max(widest, size)
+    return widest
 
 
 def eigenvalues(result: dict) -> Figure:

@@ -17,6 +17,7 @@ from spaceplane.study.changes import Change, changes, mesh_noise
 from spaceplane.study.execute import Case, Evaluate, Failure, Progress, execute
 from spaceplane.study.keys import code_fingerprint
 from spaceplane.study.shapes import ParameterRange, case_inputs, evaluate, parameter_ranges, shifted, with_one_wall_cell
+from spaceplane.study.store import ResultStore
 
 SCHEMA = "spaceplane.sensitivity"
 SCHEMA_VERSION = 1
@@ -58,6 +59,7 @@ class SensitivityResult:
         rows: every quantity of every changed shape beside the default's.
         agreement: our changes beside the thesis's, see `thesis.agreement`.
         failures: cases without a result.
+        warnings: shapes with conditions that did not converge, one line each.
         files: what was written, by name of the file (plots: the PNG, by name without its ending).
         computed, reused: cases computed now, and found in the store.
         seconds: wall-clock time, s.
@@ -70,6 +72,7 @@ class SensitivityResult:
     rows: tuple[Change, ...]
     agreement: tuple[dict, ...]
     failures: tuple[Failure, ...]
+    warnings: tuple[str, ...]
     files: dict[str, Path]
     computed: int
     reused: int
@@ -103,6 +106,7 @@ def run(
     """
     out_dir = _folder(out_dir)
     variations = plan(study)
+    ResultStore(store_path).close()  # a store that cannot be used is told before anything is meshed
     cases = _cases(study, variations)
     outcome = execute(cases, evaluate, store_path, progress, workers or study.workers)
     default = outcome.results[0]
@@ -124,6 +128,7 @@ def run(
         rows,
         tuple(thesis.agreement(as_sensitivities(rows))),
         outcome.failures,
+        _warnings([("default", default), *((one.label, result) for one, result in good)]),
         {},
         outcome.computed,
         outcome.reused,
@@ -196,6 +201,7 @@ def _document(found: SensitivityResult) -> dict:
         "study": found.study.model_dump(mode="json"),
         "cases": {"computed": found.computed, "reused": found.reused, "seconds": round(found.seconds, 3)},
         "failures": [{"case": failure.label, "reason": failure.reason} for failure in found.failures],
+        "warnings": list(found.warnings),
         "default": {"settings": found.default["settings"], "flight_points": found.default["flight_points"]},
         "rows": [row.as_row() for row in found.rows],
         "thesis_agreement": {"by": tables, "rows": list(found.agreement)},
@@ -214,6 +220,17 @@ def _cases(study: SensitivityStudy, variations: tuple[Variation, ...]) -> list[C
     for number, shift in enumerate(MESH_SHIFTS[: study.mesh_shifts], start=1):
         cases.append(Case(f"default, mesh shifted ({number})", shifted(cases[0].inputs, shift)))
     return cases + [Case(one.label, inputs({one.parameter: one.value})) for one in variations]
+
+
+def _warnings(results: list[tuple[str, dict]]) -> tuple[str, ...]:
+    """One line for each shape and flight point where a condition did not converge."""
+    lines = []
+    for label, result in results:
+        for point in result["flight_points"]:
+            bad = [f"{row['label']} {row['verdict']}" for row in point["convergence"] if row["verdict"] != "converged"]
+            if bad:
+                lines.append(f"{label}, Mach {point['mach']:g}: {', '.join(bad)}")
+    return tuple(lines)
 
 
 def _folder(out_dir: Path | str) -> Path:
