@@ -10,6 +10,7 @@ import numpy as np
 
 STATES = ["V", "gamma", "R", "p", "q", "r", "alpha", "beta", "sigma"]
 CONTROLS = ["elevon_left", "elevon_right", "rudder_left", "rudder_right", "body_flap"]
+DUTCH_ROLL = "lateral-directional oscillation (Dutch roll)"
 PARTS = ("nose", "fuselage", "body_flap")
 
 
@@ -88,7 +89,8 @@ def verdict(mode_name: str, criterion: str, quantity: str, paragraph: str, value
     return {
         "mode": mode_name, "criterion": criterion, "quantity": quantity, "paragraph": paragraph, "vehicle_class": "III",
         "category": "B", "value": value, "unit": "s" if "time" in quantity else "", "limits": limits, "level": level,
-        "margin": 0.21 if level == 1 else None if level is None else -0.049, "applicable": level is not None, "note": note,
+        "margin": 0.21 if level == 1 else None if level is None else -0.049, "applicable": level is not None,
+        "note": note,
     }  # fmt: skip
 
 
@@ -97,7 +99,8 @@ def convergence(label: str, mach: float, alpha: float, beta: float, verdict_name
     k = np.arange(count)
     force = np.stack([0.11 + 0.02 * np.exp(-k / 6), 0.0 * k + (0.01 if beta else 0), 0.42 * (1 - np.exp(-k / 8))], -1)
     return {
-        "label": label, "mach": mach, "alpha_deg": alpha, "beta_deg": beta, "verdict": verdict_name, "residual_drop": 3.4,
+        "label": label, "mach": mach, "alpha_deg": alpha, "beta_deg": beta, "verdict": verdict_name,
+        "residual_drop": 3.4,
         "iterations": count, "window_spread": {"CA": 1.2e-5, "CY": 1e-7, "CN": 4.1e-5},
         "residual_history": (-3.4 * (1 - np.exp(-k / 25)) + 0.1 * np.sin(k)).tolist(), "force_history": force.tolist(),
         "reason": "" if verdict_name == "converged" else "forces wander by 0.4 %",
@@ -128,7 +131,8 @@ def flight_point(name: str, mach: float, altitude: float, alpha: float) -> dict:
     return {
         "name": name, "mach": mach, "altitude_m": altitude, "alpha_deg": alpha, "beta_deg": 0.0, "gamma_deg": -8.4,
         "bank_deg": 55.0, "velocity_ms": 295 * mach, "dynamic_pressure_Pa": 8.6e3, "pressure_Pa": 1967.5,
-        "temperature_K": 223.24, "density_kgm3": 0.0307, "alpha_source": "schedule of the TAEM descent", "knudsen": 3.1e-7,
+        "temperature_K": 223.24, "density_kgm3": 0.0307, "alpha_source": "schedule of the TAEM descent",
+        "knudsen": 3.1e-7,
         "compressibility_factor": 0.99998, "validity": {"continuum": True, "ideal_gas": mach < 5, "notes": []},
         "coefficients": {
             "CL": 0.36, "CD": 0.2, "CY": 1e-6, "Cl": -2e-7, "Cm": -0.0123, "Cn": 3e-7, "CA": 0.09, "CN": 0.41,
@@ -136,7 +140,8 @@ def flight_point(name: str, mach: float, altitude: float, alpha: float) -> dict:
         },
         "coefficients_by_part": by_part, "derivatives": derivatives,
         "equilibrium": {"p_rads": 0.0021, "q_rads": 0.012, "r_rads": 0.0084},
-        "A": np.diag(np.arange(1.0, 10.0)).tolist(), "B": np.ones((9, 5)).tolist(), "states": STATES, "inputs": CONTROLS,
+        "A": np.diag(np.arange(1.0, 10.0)).tolist(), "B": np.ones((9, 5)).tolist(), "states": STATES,
+        "inputs": CONTROLS,
         "form": "rigid-body",
         "modes": [
             mode("lateral oscillation", -0.0163 * mach, 1.31, "beta", "yaw and roll against sideslip"),
@@ -147,11 +152,12 @@ def flight_point(name: str, mach: float, altitude: float, alpha: float) -> dict:
             mode("altitude", -1.2e-14, 0.0, "R", "neutral: zero to round-off"),
         ],
         "verdicts": [
-            verdict("lateral oscillation", "lateral-directional oscillation (Dutch roll)", "damping ratio", "3.3.1.1", 0.031, 2,
+            verdict("lateral oscillation", DUTCH_ROLL, "damping ratio", "3.3.1.1", 0.031, 2,
                     {"1": ">= 0.08", "2": ">= 0.02", "3": ">= 0"}),
-            verdict("lateral oscillation", "lateral-directional oscillation (Dutch roll)", "natural frequency", "3.3.1.1", 1.31,
-                    1, {"1": ">= 0.4", "2": ">= 0.4", "3": ">= 0.4"}),
-            verdict("roll mode", "roll mode", "time constant", "3.3.1.2", 1.1, 1, {"1": "<= 1.4", "2": "<= 3", "3": "<= 10"}),
+            verdict("lateral oscillation", DUTCH_ROLL, "natural frequency", "3.3.1.1", 1.31, 1,
+                    {"1": ">= 0.4", "2": ">= 0.4", "3": ">= 0.4"}),
+            verdict("roll mode", "roll mode", "time constant", "3.3.1.2", 1.1, 1,
+                    {"1": "<= 1.4", "2": "<= 3", "3": "<= 10"}),
             verdict("spiral", "spiral stability", "time to double", "3.3.1.3", 3.1, "below 3",
                     {"1": ">= 20", "2": ">= 8", "3": ">= 4"}),
             verdict("short period", "short period damping", "damping ratio", "3.2.2.1.2", None, None, {},
@@ -171,15 +177,18 @@ def example_result() -> dict:
     return {
         "schema": "spaceplane.result", "schema_version": 1, "created": "2030-01-02T03:04:05Z", "version": "0.1.0",
         "vehicle": {
-            "name": "example body", "shape": shape, "deflections_deg": dict.fromkeys(CONTROLS, 0.0) | {"body_flap": -20.0},
+            "name": "example body", "shape": shape,
+            "deflections_deg": dict.fromkeys(CONTROLS, 0.0) | {"body_flap": -20.0},
             "mass": {"mass_kg": 26000, "Ixx_kgm2": 119000, "Iyy_kgm2": 769000, "Izz_kgm2": 806000},
             "reference": {"area_m2": 110.0, "c_ref_m": 23.0, "b_ref_m": 13.0, "moment_center_m": [13.0, 0.0, 0.0]},
-            "geometry": {"length_m": 25.0, "span_m": 13.0, "height_m": 4.5, "wetted_area_m2": 401.0, "volume_m3": 250.0, "triangles": 8784},
+            "geometry": {"length_m": 25.0, "span_m": 13.0, "height_m": 4.5, "wetted_area_m2": 401.0,
+                         "volume_m3": 250.0, "triangles": 8784},
         },
         "settings": {"mach": [0.8, 1.5, 2.5], "cells": 200000},
         "mesh": {"cells": 213456, "wall_cell_m": 0.1, "split_cells": 812, "merged_cells": 9211, "area_error": 1.5e-13,
                  "volume_error": 2e-14, "seconds": 2.9, "warnings": []},
-        "solver": {"seconds": 41.2, "seconds_by_phase": {"coarse": 6.1, "fine": 35.1}, "precision": "fp32", "conditions": 18},
+        "solver": {"seconds": 41.2, "seconds_by_phase": {"coarse": 6.1, "fine": 35.1}, "precision": "single",
+                   "conditions": 18},
         "flight_points": [flight_point("Mach 0.8", 0.8, 13000, 9.0), flight_point("Mach 1.5", 1.5, 20000, 12.0),
                           flight_point("Mach 2.5", 2.5, 26700, 16.6)],
         "warnings": [],

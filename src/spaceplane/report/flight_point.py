@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from markupsafe import Markup, escape
+from markupsafe import Markup
 
 from spaceplane.report.names import GREEK, STATES, split_derivative, symbol, words
-from spaceplane.report.numbers import MISSING, duration, fixed, grouped, is_number, measured, number
+from spaceplane.report.numbers import MINUS, MISSING, duration, fixed, grouped, is_number, measured, number
 from spaceplane.report.plots import convergence_plot, derivative_bars, eigenvalue_planes, eigenvalue_text, phase_clock
 from spaceplane.report.read import level_text
 
@@ -202,18 +202,25 @@ def _verdict_groups(verdicts: list[dict]) -> list[dict]:
 
 def _verdict(v: dict) -> dict:
     limits = v.get("limits") or {}
-    margin, unit = v.get("margin"), v.get("unit") or ""
+    margin = v.get("margin")
     return {
         "mode": v["mode"],
-        "quantity": v.get("quantity") or "",
+        "quantity": _pretty(v.get("quantity") or ""),
         "value": number(v.get("value"), 4),
-        "unit": unit,
+        "unit": _pretty(v.get("unit") or "") if is_number(v.get("value")) else "",
         "limits": [_limit(limits.get(k)) for k in ("1", "2", "3")],
         "level": level_of(v),
         "margin": f"{'+' if margin > 0 else ''}{number(margin, 3)}" if is_number(margin) else MISSING,
         "inside": is_number(margin) and margin >= 0,
-        "note": v.get("note") or "",
+        "note": _pretty(v.get("note") or ""),
     }
+
+
+def _pretty(text: str) -> str:
+    """Plain-text formulas with Greek letters and powers."""
+    for plain, sign in (("omega", "ω"), ("n/alpha", "n/α"), ("^2", "²"), (" s2", " s²"), ("zeta", "ζ")):
+        text = text.replace(plain, sign)
+    return text
 
 
 def _limit(limit: object) -> str:
@@ -229,14 +236,11 @@ def _convergence(record: dict) -> dict:
         f"{fixed(record.get('residual_drop'), 1)} decades in {grouped(record.get('iterations'))} iterations",
     ]
     if any(is_number(v) for v in spread.values()):
-        pieces.append(
-            "last window: "
-            + ", ".join(f"{escape(k)} {measured(0.0, v).error or number(v, 2)}" for k, v in spread.items())
-        )
+        pieces.append("forces within " + ", ".join(f"{k} ±{number(v, 2)}" for k, v in spread.items()))
     if record.get("reason"):
         pieces.append(record["reason"])
     return {
-        "label": record.get("label") or "",
+        "label": words(record.get("label") or "").replace("-", MINUS),
         "verdict": record.get("verdict") or "",
         "css": VERDICT_CSS.get(record.get("verdict"), ""),
         "svg": Markup(convergence_plot(record)),

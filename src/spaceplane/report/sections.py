@@ -223,7 +223,7 @@ def _mesh_rows(result: dict) -> list[tuple[str, str]]:
             rows.append((label, number(mesh[key], 2)))
     conditions = (result.get("solver") or {}).get("conditions")
     if is_number(conditions):
-        rows.append(("Flow conditions on it", grouped(conditions)))
+        rows.append(("Flow conditions in all", grouped(conditions)))
     return rows
 
 

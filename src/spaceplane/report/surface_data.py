@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import gzip
+import warnings
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -58,8 +59,16 @@ def read_surface(path: Path) -> ColouredSurface:
     if not path.is_file():
         raise InputError(f"{path}: no such file")
     import pyvista
+    from vtkmodules.vtkCommonCore import vtkObject
 
-    body = pyvista.read(path)
+    shown = vtkObject.GetGlobalWarningDisplay()
+    vtkObject.SetGlobalWarningDisplay(0)  # what is wrong with the file is said below, on one line
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            body = pyvista.read(path)
+    finally:
+        vtkObject.SetGlobalWarningDisplay(shown)
     if not isinstance(body, pyvista.PolyData) or body.n_cells == 0:
         raise InputError(f"{path}: damaged or empty, not a surface of triangles")
     if not body.is_all_triangles:

@@ -1,0 +1,94 @@
+"""The terminal summary and the flat tables."""
+
+from __future__ import annotations
+
+import csv
+import io
+
+import pytest
+from rich.console import Console
+
+from spaceplane.report.summary import print_flow, print_summary, shortcomings
+from spaceplane.report.tables import write_csv, write_netcdf
+
+from .example_result import convergence, example_result
+
+
+def printed(function, *arguments, width: int = 120) -> str:
+    stream = io.StringIO()
+    function(*arguments, console=Console(file=stream, width=width, color_system=None))
+    return stream.getvalue()
+
+
+def test_summary_shows_the_findings(tmp_path):
+    text = printed(print_summary, example_result(), tmp_path / "report.html")
+    assert "1.405 ± 0.018" in text
+    assert "aperiodic pitch divergence" in text
+    assert "below 3" in text
+    assert "all 18 flow conditions converged" in text
+    assert str(tmp_path / "report.html") in text.replace("\n", "")
+
+
+@pytest.mark.parametrize("width", [80, 200])
+def test_no_line_is_wider_than_the_terminal(width):
+    assert max(map(len, printed(print_summary, example_result(), width=width).splitlines())) <= width
+
+
+def test_unconverged_conditions_are_never_called_good():
+    result = example_result()
+    assert shortcomings(result) == []
+    result["flight_points"][2]["convergence"][5] = convergence("beta", 2.5, 16.6, 2.0, "failed")
+    assert shortcomings(result) == ["Mach 2.5, condition beta: failed"]
+    text = printed(print_summary, result)
+    assert "1 of 18 flow conditions NOT converged" in text
+    assert "all 18" not in text
+
+
+def test_a_flight_point_without_modes_is_not_good():
+    result = example_result()
+    result["flight_points"][0]["modes"] = []
+    assert shortcomings(result) == ["Mach 0.8: no modes"]
+    assert shortcomings(result | {"flight_points": []}) == ["no flight point"]
+
+
+def test_flow_table():
+    record = {
+        "mach": 2.0,
+        "alpha_deg": 5.0,
+        "beta_deg": 0.0,
+        "CL": 0.123456,
+        "CD": None,
+        "converged": False,
+        "verdict": "failed",
+    }
+    text = printed(print_flow, [record])
+    assert "0.12346" in text and "failed" in text and "–" in text
+
+
+def test_csv_holds_every_number(tmp_path):
+    result = example_result()
+    paths = {p.name: list(csv.DictReader(p.open())) for p in write_csv(result, tmp_path)}
+    point = result["flight_points"][2]
+    row = next(r for r in paths["derivatives.csv"] if r["flight_point"] == "Mach 2.5" and r["derivative"] == "Cm_alpha")
+    assert float(row["value"]) == point["derivatives"]["Cm_alpha"]["value"]
+    assert float(row["error"]) == point["derivatives"]["Cm_alpha"]["error"]
+    assert row["unit"] == "1/rad"
+    totals = [r for r in paths["coefficients.csv"] if r["part"] == "total"]
+    assert [float(r["CL"]) for r in totals] == [p["coefficients"]["CL"] for p in result["flight_points"]]
+    assert len(paths["modes.csv"]) == 18
+    missing = next(r for r in paths["verdicts.csv"] if r["mode"] == "short period")
+    assert missing["level"] == "" and missing["value"] == ""
+
+
+def test_netcdf_gives_the_same_numbers(tmp_path):
+    import xarray as xr
+
+    result = example_result()
+    (path,) = write_netcdf(result, tmp_path)
+    with xr.open_dataset(path) as data:
+        record = result["flight_points"][1]["derivatives"]["Cm_alpha"]
+        assert float(data.Cm_alpha.sel(flight_point="Mach 1.5", part="total")) == record["value"]
+        assert float(data.Cm_alpha_error.sel(flight_point="Mach 1.5", part="total")) == record["error"]
+        assert float(data.Cm_alpha.sel(flight_point="Mach 1.5", part="nose")) == record["by_part"]["nose"]
+        assert data.Cm_alpha.attrs["units"] == "1/rad"
+        assert data.mach.values == pytest.approx([0.8, 1.5, 2.5])
