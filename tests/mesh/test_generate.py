@@ -183,6 +183,32 @@ def test_refinement_box():
     check_shape(mesh)
 
 
+def test_fine_parts_have_half_sized_cells():
+    left, right = bodies.box(1, 1, 0.3, at=(0, -1.2, 0)), bodies.box(1, 1, 0.3, at=(0, 1.2, 0))
+    surface = bodies.from_trimesh(bodies.box(2, 1, 1), left, right, names=("fuselage", "wing_left", "wing_right"))
+    mesh = generate(surface, MeshSettings(wall_cell=0.2, fine_parts=("wing",)))
+    size = mesh.cell_size[mesh.wall_cell[mesh.piece_wall]]
+    assert np.allclose(size[mesh.piece_part > 0], 0.1)
+    assert np.isclose(size[mesh.piece_part == 0], 0.2).mean() > 0.3
+    check_body(mesh, surface)
+    check_shape(mesh)
+    with pytest.raises(InputError, match="did you mean wing_left"):
+        generate(surface, MeshSettings(fine_parts=("wing_lefd",)))
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_fine_edges_have_half_sized_cells(seed):
+    surface = bodies.rotated(bodies.diamond_wing(3.0, 2.0, 1.2), seed)
+    mesh = generate(surface, MeshSettings(wall_cell=0.2, fine_edges=True, far_field=2.0))
+    turn = np.linalg.norm(mesh.wall_area, axis=1)
+    whole = np.bincount(mesh.piece_wall, np.linalg.norm(mesh.piece_area, axis=1))
+    size = mesh.cell_size[mesh.wall_cell]
+    assert np.isclose(size[turn < 0.8 * whole], 0.1).all()
+    assert np.isclose(size, 0.2).sum() > 50
+    check_body(mesh, surface)
+    check_shape(mesh)
+
+
 @pytest.mark.parametrize(
     ("settings", "word"),
     [

@@ -84,7 +84,6 @@ def assemble(
     center[:first] = cut.center + shift
 
     sides = cut.face_sides.astype(np.int64)
-    window = leaves.wall_index
     mirror = np.zeros(len(sides), bool)
     for side in range(2):
         open_side = np.flatnonzero(sides[:, side] < 0)
@@ -92,7 +91,9 @@ def assemble(
         if side == 0:
             place[np.arange(len(open_side)), cut.face_axis[open_side]] -= 1
         outside = (place[:, 1] < 0) & half
-        leaf = window.array[tuple((place - window.origin)[~outside].T)]
+        place = place[~outside]
+        leaf = leaves.index[0].at(place)
+        leaf = np.where(leaf >= 0, leaf, leaves.index[1].at(place // 2))  # beside a coarse wall
         if len(leaf) and leaf.min() < 0:
             raise RuntimeError("a fluid face of a cut cell has no cell beyond it")
         sides[open_side[~outside], side] = first + leaf

@@ -11,6 +11,7 @@ from spaceplane.mesh.cutcells import CutCells
 from spaceplane.mesh.grid import Grid
 from spaceplane.mesh.mesh import Mesh
 from spaceplane.mesh.settings import MeshSettings
+from spaceplane.mesh.walls import fine_parts
 from spaceplane.vehicle.surface import Surface
 
 # A part is called thin when more than this share of the grid lines through it leave it within two cells; below that it
@@ -44,7 +45,7 @@ def describe(
     begin = time.perf_counter()
     sides = 2 if grid.half else 1
     by_part = _part_errors(mesh, surface, wetted)
-    warnings = _thin_warnings(cut, shift, surface, grid)
+    warnings = _thin_warnings(cut, shift, surface, grid, _wall_cells(surface, settings, grid))
     if enclosed > 0.0:
         warnings.append(f"{enclosed:.4g} m3 of air enclosed by the body cannot be reached from outside and is left out")
     if cut.folded_edges:
@@ -59,8 +60,9 @@ def describe(
         "cut_cells": sides * int(cut.cut.sum()),
         "split_cells": sides * cut.split_cells,
         "merged_cells": merged,
-        "wall_cell": grid.cell,
-        "wall_cell_m": grid.cell,
+        "wall_cell": grid.wall_cell,
+        "wall_cell_m": grid.wall_cell,
+        "grid_cell_m": grid.cell,
         "levels": grid.levels + 1,
         "symmetric": grid.half,
         "grid_corner": [float(x) for x in grid.corner],
@@ -108,14 +110,19 @@ def _part_errors(mesh: Mesh, surface: Surface, wetted: np.ndarray) -> dict:
     return errors
 
 
-def _thin_warnings(cut: CutCells, shift: np.ndarray, surface: Surface, grid: Grid) -> list[str]:
-    """Name the parts that are mostly thinner than two cells, with a typical place."""
+def _wall_cells(surface: Surface, settings: MeshSettings, grid: Grid) -> np.ndarray:
+    """[part] size of the cells at each part's wall, m."""
+    return np.where(fine_parts(surface.part_names, settings), grid.cell, grid.wall_cell)
+
+
+def _thin_warnings(cut: CutCells, shift: np.ndarray, surface: Surface, grid: Grid, cells: np.ndarray) -> list[str]:
+    """Name the parts that are mostly thinner than two of their `cells` [part], with a typical place."""
     warnings = []
     parts = len(surface.part_names)
     examined = np.bincount(surface.part[cut.lines.astype(np.int64)], minlength=parts)
     part = surface.part[cut.thin[:, 4].astype(np.int64)]
     for k in range(parts):
-        here = cut.thin[part == k]
+        here = cut.thin[(part == k) & (cut.thin[:, 3] * grid.cell < 2.0 * cells[k])]
         if len(here) == 0 or len(here) < THIN_SHARE * examined[k]:
             continue
         typical = here[np.argsort(here[:, 3])[len(here) // 2]]
@@ -123,6 +130,6 @@ def _thin_warnings(cut: CutCells, shift: np.ndarray, surface: Surface, grid: Gri
         warnings.append(
             f"{surface.part_names[k]}: wall thinner than two cells over {len(here) / examined[k]:.0%} of it, "
             f"for example {typical[3] * grid.cell:.3g} m at x={x:.3f} y={y:.3f} z={z:.3f} m "
-            f"(wall cell {grid.cell:.3g} m)"
+            f"(wall cell {cells[k]:.3g} m)"
         )
     return warnings

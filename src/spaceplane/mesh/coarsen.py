@@ -36,7 +36,7 @@ def coarsen(mesh: Mesh, merge_fraction: float = 0.3) -> tuple[Mesh, np.ndarray]:
     """
     if mesh.cell_cube_center is None or "grid_corner" not in mesh.record:
         raise InputError("mesh: only octree meshes can be coarsened, this one was imported")
-    unit = mesh.record["wall_cell_m"]
+    unit = mesh.record["grid_cell_m"]
     corner = np.array(mesh.record["grid_corner"])
     cube = (mesh.cell_cube_center - corner) / unit
     level = np.round(np.log2(mesh.cell_size / unit)).astype(np.int64)
@@ -55,7 +55,7 @@ def coarsen(mesh: Mesh, merge_fraction: float = 0.3) -> tuple[Mesh, np.ndarray]:
     a = _as_assembly(mesh, corner, unit, size, parent)
     root = _join_small_sides(a, first[label], merge_fraction)
     coarse, number = finish(a, root, np.ones(n, bool), unit, corner, mesh.part_names)
-    kept = ("wall_cell", "wall_cell_m", "levels", "symmetric", "grid_corner", "domain", "volume")
+    kept = ("wall_cell", "wall_cell_m", "grid_cell_m", "levels", "symmetric", "grid_corner", "domain", "volume")
     coarse.record.update({name: mesh.record[name] for name in kept})
     coarse.record.update(
         cells=coarse.cells, faces=len(coarse.face_cells), closure=float(np.abs(coarse.closure()).max()), warnings=[]

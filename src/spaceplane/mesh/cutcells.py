@@ -36,7 +36,7 @@ class CutCells:
         split_cells: cells with more than one control volume.
         folded_edges: cell edges whose ends are neither clearly in the body nor in the fluid.
         gauss_error: largest difference between a volume's sizes from the three coordinate directions.
-        thin: [n, (x, y, z, thickness, triangle)] places where a grid line leaves the body within two cells.
+        thin: [n, (x, y, z, thickness, triangle)] places where a grid line leaves the body within four cells.
         lines: [n] triangle of every crossing examined for thickness.
         seconds: by phase.
     """
@@ -226,7 +226,7 @@ def _face_centers(axis, corner, area, moment):
 
 
 def _thin_walls(surface: Subdivision, points: np.ndarray, triangles: np.ndarray):
-    """Thickness of the body along grid lines nearly normal to it, where it is below two cells."""
+    """Thickness of the body along grid lines nearly normal to it, where it is below four cells."""
     corners = points[triangles]
     normal = np.abs(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]))
     steepest = normal.argmax(axis=1)
@@ -244,6 +244,6 @@ def _thin_walls(surface: Subdivision, points: np.ndarray, triangles: np.ndarray)
         entry = np.flatnonzero(pair & (steepest[triangle[:-1]] == axis))
         thickness = at[entry + 1, axis] - at[entry, axis]
         lines.append(triangle[entry])
-        few = entry[thickness < 2.0]
-        thin.append(np.column_stack([at[few], thickness[thickness < 2.0], triangle[few]]))
+        few = entry[thickness < 4.0]
+        thin.append(np.column_stack([at[few], thickness[thickness < 4.0], triangle[few]]))
     return np.concatenate(thin), np.concatenate(lines)

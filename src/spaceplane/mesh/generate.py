@@ -17,6 +17,7 @@ from spaceplane.mesh.grid import Grid, boxes_in_cells, place_grid
 from spaceplane.mesh.mesh import Mesh
 from spaceplane.mesh.settings import MeshSettings
 from spaceplane.mesh.symmetry import is_symmetric, mirrored_parts
+from spaceplane.mesh.walls import fine_parts, fine_walls, join_coarse_walls
 from spaceplane.vehicle.surface import Surface
 
 # Cells of the dense window round the body that fit into memory with all its companions.
@@ -40,6 +41,7 @@ def generate(surface: Surface, settings: MeshSettings | None = None) -> Mesh:
     """
     settings = settings or MeshSettings()
     _check(surface)
+    fine_parts(surface.part_names, settings)
     if settings.target_cells is None:
         return _generate(surface, settings, _symmetric(surface, settings))
     return _meet_target(surface, settings)
@@ -125,8 +127,10 @@ def _generate(surface: Surface, settings: MeshSettings, half: bool) -> Mesh:
     extent = grid.size * 2**grid.levels
     if (window.origin < 0).any() or (window.origin + window.array.shape > extent).any():
         raise InputError("domain: the body is larger than the domain")
-    refined = octree.refined_levels(
-        window, grid.size, grid.levels, settings.wall_layers, settings.growth_layers, boxes_in_cells(settings, grid)
+    fine = fine_walls(window, cut, shift, surface, settings)
+    layers = (settings.wall_layers, settings.growth_layers)
+    refined, coarse_walls = octree.refined_levels(
+        window, fine, grid.size, grid.levels, *layers, boxes_in_cells(settings, grid)
     )
     expected = octree.count_leaves(refined) * (2 if half else 1)
     if expected > settings.max_cells:
@@ -140,7 +144,9 @@ def _generate(surface: Surface, settings: MeshSettings, half: bool) -> Mesh:
 
     upstream = surface.area_vectors[:, 0] < 0.0
     whole = assembly.assemble(cut, leaves, shift, surface.part.astype(np.int64), upstream, half)
-    root = assembly.join_small(whole, settings.merge_fraction)
+    root = join_coarse_walls(whole, coarse_walls)
+    joined = int((root != np.arange(len(root))).sum()) * (2 if half else 1)
+    root = assembly.join_small(whole, settings.merge_fraction, root)
     if half:
         n = len(root)
         whole = assembly.mirror(whole, mirrored_parts(surface.part_names))
@@ -159,7 +165,7 @@ def _generate(surface: Surface, settings: MeshSettings, half: bool) -> Mesh:
     body *= grid.cell**3 * (2 if half else 1)
     wetted = np.bincount(whole.polygon_part, whole.polygon_size, minlength=len(surface.part_names)) * grid.cell**2
     enclosed = float(whole.volume[~kept].sum()) * grid.cell**3
-    merged = int((root != np.arange(len(root))).sum())
+    merged = int((root != np.arange(len(root))).sum()) - joined
     mesh.record.update(describe(mesh, surface, settings, grid, cut, shift, wetted, body, merged, enclosed, seconds))
     return mesh
 

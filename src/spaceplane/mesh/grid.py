@@ -18,7 +18,8 @@ class Grid:
     """Where the octree lies.
 
     Attributes:
-        cell: wall cell, m.
+        cell: smallest cell, m: level 0.
+        wall_cell: cells at most walls, m: `cell`, or twice that where some walls are finer.
         corner: [xyz] of integer place (0, 0, 0), m.
         size: [xyz] domain in cells of the top level.
         levels: number of the top level.
@@ -26,6 +27,7 @@ class Grid:
     """
 
     cell: float
+    wall_cell: float
     corner: np.ndarray
     size: np.ndarray
     levels: int
@@ -47,7 +49,7 @@ class Grid:
 
 def place_grid(surface: Surface, settings: MeshSettings, half: bool) -> Grid:
     """Lay the grid: y = 0 is a cell face of every level, the body keeps its place within a wall cell in x and z."""
-    cell = settings.wall_cell
+    cell = settings.wall_cell / (2.0 if settings.graded_wall else 1.0)
     low, high = surface.bounds
     length = float((high - low).max())
     levels = max(1, round(math.log2(max(length / cell, 2.0))))
@@ -78,7 +80,7 @@ def place_grid(surface: Surface, settings: MeshSettings, half: bool) -> Grid:
     if half:
         size[1] //= 2
         corner[1] = 0.0
-    return Grid(cell, corner, size, levels, half)
+    return Grid(cell, settings.wall_cell, corner, size, levels, half)
 
 
 def boxes_in_cells(settings: MeshSettings, grid: Grid) -> list:

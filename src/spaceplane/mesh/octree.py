@@ -24,6 +24,14 @@ class Window:
     origin: np.ndarray
     array: np.ndarray
 
+    def at(self, place: np.ndarray) -> np.ndarray:
+        """Entries at places [n, ijk], -1 outside the window."""
+        local = place - self.origin
+        inside = ((local >= 0) & (local < self.array.shape)).all(axis=1)
+        found = np.full(len(place), -1, self.array.dtype)
+        found[inside] = self.array[tuple(local[inside].T)]
+        return found
+
 
 @dataclass(frozen=True)
 class Leaves:
@@ -37,7 +45,7 @@ class Leaves:
         face_fine: [face] the finer of the two leaves (the first when equal).
         face_side: [face] side of the finer leaf that the face lies on, 0 below, 1 above.
         far_leaf, far_axis, far_side: the same for faces on the boundary of the domain.
-        wall_index: window of level 0 with the leaf of each cell, -1 where none.
+        index: windows of levels 0 and 1 with the leaf of each cell, -1 where none.
     """
 
     level: np.ndarray
@@ -49,16 +57,17 @@ class Leaves:
     far_leaf: np.ndarray
     far_axis: np.ndarray
     far_side: np.ndarray
-    wall_index: Window
+    index: tuple[Window, Window]
 
 
 def refined_levels(
-    cut: Window, size: np.ndarray, levels: int, wall_layers: int, growth_layers: int, boxes: list
-) -> list:
+    cut: Window, fine: Window, size: np.ndarray, levels: int, wall_layers: int, growth_layers: int, boxes: list
+) -> tuple[list, Window]:
     """Which cells of each level are refined.
 
     Args:
         cut: cut cells on level 0.
+        fine: those of them that shall stay cells of level 0, in an equal window.
         size: [3] domain in cells of the top level.
         levels: number of the top level.
         wall_layers: layers of level-0 cells around the cut cells.
@@ -67,24 +76,34 @@ def refined_levels(
 
     Returns:
         [level] Window of cells that are refined into the level below; entry 0 is the cut cells, the last covers
-        the domain.
+        the domain. And the cells of level 1 that are refined only because they are cut: to be joined again.
     """
     refined = [cut]
     for level in range(1, levels + 1):
         extent = size * 2 ** (levels - level)
-        grown = _dilate(refined[-1], wall_layers if level == 1 else growth_layers, extent * 2)
+        grown = _dilate(fine if level == 1 else refined[-1], wall_layers if level == 1 else growth_layers, extent * 2)
         window = _parents(grown)
         for at_level, lower, upper in boxes:
             if at_level < level:
                 low = np.clip(np.floor(np.asarray(lower) / 2**level).astype(np.int64), 0, extent - 1)
                 high = np.clip(np.ceil(np.asarray(upper) / 2**level).astype(np.int64), low + 1, extent)
                 window = _mark(window, low, high)
+        if level == 1:
+            cut_parents = _parents(cut)
+            here = _slices(cut_parents, window.origin)
+            joined = Window(cut_parents.origin, cut_parents.array & ~window.array[here])
+            window.array[here] |= cut_parents.array
         refined.append(window)
     top = np.zeros(size, bool)
     last = refined[-1]
-    top[tuple(slice(o, o + n) for o, n in zip(last.origin, last.array.shape, strict=True))] = last.array
+    top[_slices(last, np.zeros(3, np.int64))] = last.array
     refined[-1] = Window(np.zeros(3, np.int64), top)
-    return refined
+    return refined, joined
+
+
+def _slices(window: Window, origin: np.ndarray) -> tuple:
+    """Where `window` lies in an array that begins at `origin`."""
+    return tuple(slice(s, s + n) for s, n in zip(window.origin - origin, window.array.shape, strict=True))
 
 
 def _dilate(window: Window, layers: int, extent: np.ndarray) -> Window:
@@ -92,8 +111,7 @@ def _dilate(window: Window, layers: int, extent: np.ndarray) -> Window:
     low = np.maximum(window.origin - layers, 0)
     high = np.minimum(window.origin + window.array.shape + layers, extent)
     grown = np.zeros(high - low, bool)
-    shift = window.origin - low
-    grown[tuple(slice(s, s + n) for s, n in zip(shift, window.array.shape, strict=True))] = window.array
+    grown[_slices(window, low)] = window.array
     for axis in range(3):
         done = 0
         while done < layers:
@@ -113,8 +131,7 @@ def _parents(window: Window) -> Window:
     high = -((-(window.origin + window.array.shape)) // 2)
     shape = high - low
     padded = np.zeros(2 * shape, bool)
-    shift = window.origin - 2 * low
-    padded[tuple(slice(s, s + n) for s, n in zip(shift, window.array.shape, strict=True))] = window.array
+    padded[_slices(window, 2 * low)] = window.array
     return Window(low, padded.reshape(shape[0], 2, shape[1], 2, shape[2], 2).any(axis=(1, 3, 5)))
 
 
@@ -123,8 +140,7 @@ def _mark(window: Window, low: np.ndarray, high: np.ndarray) -> Window:
     origin = np.minimum(window.origin, low)
     end = np.maximum(window.origin + window.array.shape, high)
     array = np.zeros(end - origin, bool)
-    shift = window.origin - origin
-    array[tuple(slice(s, s + n) for s, n in zip(shift, window.array.shape, strict=True))] = window.array
+    array[_slices(window, origin)] = window.array
     array[tuple(slice(a, b) for a, b in zip(low - origin, high - origin, strict=True))] = True
     return Window(origin, array)
 
@@ -194,7 +210,7 @@ def build_leaves(refined: list, fluid: Window) -> Leaves:
         far_leaf=far[:, 0].copy(),
         far_axis=far[:, 1].copy(),
         far_side=far[:, 2].copy(),
-        wall_index=indices[0],
+        index=(indices[0], indices[1]),
     )
 
 

@@ -36,6 +36,10 @@ class MeshSettings:
         wall_layers: layers of wall-sized cells beside the cut cells; at least 1.
         growth_layers: layers of cells of each coarser size before the next; at least 1.
         merge_fraction: control volumes below this fraction of their cube are merged with a neighbour.
+        fine_parts: names of parts whose walls get cells of half `wall_cell`; `elevon` stands for `elevon_left` and
+            `elevon_right`.
+        fine_edges: half-sized cells also where the wall turns by more than about 50 degrees within a wall cell: leading
+            and trailing edges, tips, plates thinner than a cell.
         boxes: refinement boxes; mirrored on a body meshed as half and mirror image.
         symmetric: mirror the mesh of the right half; None finds out whether the surface is symmetric about y = 0.
         offset: (x, z) position of the body's lower corner within a wall cell, as a fraction of the cell.
@@ -49,10 +53,17 @@ class MeshSettings:
     wall_layers: int = 2
     growth_layers: int = 3
     merge_fraction: float = 0.3
+    fine_parts: tuple[str, ...] = ()
+    fine_edges: bool = False
     boxes: tuple[RefinementBox, ...] = ()
     symmetric: bool | None = None
     offset: tuple[float, float] = (0.38196601125, 0.2360679775)
     max_cells: int = 12_000_000
+
+    @property
+    def graded_wall(self) -> bool:
+        """Whether some walls get cells of half the size of others."""
+        return bool(self.fine_parts) or self.fine_edges
 
     def __post_init__(self) -> None:
         """Refuse values that no mesh can have.
