@@ -1,6 +1,7 @@
 """The TOML file of `spaceplane modes`: what it gives and how it refuses."""
 
 import json
+import tomllib
 from pathlib import Path
 
 import numpy as np
@@ -41,6 +42,11 @@ def test_every_example_runs(path):
     assert len(record["eigenvalues"]) == 9
     assert sum(2 if m["oscillatory"] else 1 for m in record["modes"]) == 9
     assert record["verdicts"]
+    A, states = np.array(record["A"]), record["states"]
+    assert len(record["names"]) == len(record["eigenvectors"]) == 9
+    for (re, im), entry in zip(record["eigenvalues"], record["eigenvectors"], strict=True):
+        z = [entry[s]["magnitude"] * np.exp(1j * np.radians(entry[s]["phase_deg"])) for s in states]
+        assert np.abs(A @ z - complex(re, im) * np.array(z)).max() < 1e-9
 
 
 def test_boeing_747_example_flies_textbook_modes():
@@ -49,6 +55,29 @@ def test_boeing_747_example_flies_textbook_modes():
     assert {"short_period", "phugoid", "dutch_roll", "roll", "spiral"} <= set(by_kind)
     assert by_kind["short_period"]["eigenvalue"] == pytest.approx([-0.372, 0.887], abs=4e-3)
     assert by_kind["phugoid"]["eigenvalue"] == pytest.approx([-0.0033, 0.067], abs=1e-3)
+
+
+def test_random_derivatives_never_break_the_record():
+    """Signs and sizes far from any vehicle, zeros among them: nine eigenvalues, plain JSON, no NaN."""
+    content = tomllib.loads(EXAMPLE.read_text(encoding="utf-8"))
+    names = [name for name in content["derivatives"] if name != "unit"]
+    rng = np.random.default_rng(7)
+    for case in range(100):
+        content["derivatives"] = {"unit": "per_radian"} | {
+            name: float(rng.choice([0.0, 1.0, -1.0]) * 10 ** rng.uniform(-5, 1)) for name in names
+        }
+        content["flight"] |= {
+            "mach": float(10 ** rng.uniform(-1, 1.3)),
+            "altitude_m": float(rng.uniform(0, 86_000)),
+            "gamma_deg": float(rng.uniform(-60, 60)),
+            "bank_deg": float(rng.uniform(-80, 80)),
+        }
+        content["model"] = {"form": ("rigid-body", "thesis")[case % 2]}
+        record = json.loads(json.dumps(analyse_modes(derivatives_file.from_tables(content)), allow_nan=False))
+        assert len(record["eigenvalues"]) == 9
+        for mode in record["modes"]:
+            divergence = not mode["oscillatory"] and mode["double_time_s"] is not None
+            assert not (divergence and mode["kind"] in ("short_period", "phugoid", "dutch_roll", "roll"))
 
 
 def test_per_degree_and_per_radian_agree(tmp_path):

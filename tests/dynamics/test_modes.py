@@ -144,6 +144,13 @@ def test_follow_between_flight_points():
     assert sum(m is not None for m in only_fast) == 2
 
 
+def test_defective_eigenvalues_have_names_too():
+    """Without aerodynamics speed, height and heading only integrate: double zeros, whose eigenvectors share no state."""
+    modes = identify(from_matrix(np.array([[0.0, 1.0], [0.0, 0.0]]), ("beta", "p")))
+    assert [m.name for m in modes] == ["neutral mode", "neutral mode"]
+    assert all(np.isfinite(m.participation).all() and m.participation.sum() == pytest.approx(1.0) for m in modes)
+
+
 def test_record_is_json():
     for mode in identify(linearise(horus.point(), horus.MASS, horus.REFERENCE, horus.derivatives(), "thesis")):
         text = json.dumps(to_record(mode), allow_nan=False)

@@ -85,12 +85,24 @@ def identify(system: StateSpace) -> tuple[Mode, ...]:
             value = 0j
         if value.imag < 0:
             continue
-        share = np.abs(left[:, k].conj() * right[:, k])
-        share = share / share.sum()
+        share = _participation(left[:, k], right[:, k])
         found.append((value, right[:, k], share, name_mode(value, dict(zip(system.states, share, strict=True)))))
     if any(value.real > 0 and naming.kind in PITCH_APERIODIC for value, _, _, naming in found):
         found = [(value, vector, share, without_pitch_stiffness(naming)) for value, vector, share, naming in found]
     return tuple(_mode(value, vector, share, naming, system.states) for value, vector, share, naming in found)
+
+
+def _participation(left: np.ndarray, right: np.ndarray) -> np.ndarray:
+    """[state] shares, adding to 1.
+
+    The left and right eigenvectors of a defective eigenvalue (a double zero, say) have no state in common; there the
+    mean of their own shares stands in.
+    """
+    share = np.abs(left.conj() * right)
+    if share.sum() > 1e-12 * np.linalg.norm(left) * np.linalg.norm(right):
+        return share / share.sum()
+    own = [np.abs(vector) ** 2 / np.linalg.norm(vector) ** 2 for vector in (left, right)]
+    return 0.5 * (own[0] + own[1])
 
 
 def _mode(value: complex, right: np.ndarray, share: np.ndarray, naming: Naming, states: tuple[str, ...]) -> Mode:

@@ -2,7 +2,7 @@
 
 Schema `spaceplane.modes`, version 1: `flight` and `vehicle` (resolved values, unit in the name), `derivatives` (per rad
 and per unit Mach), `form`, `states`, `inputs`, `A`, `B`, `equilibrium` (rad/s), `eigenvalues` (every one, [re, im] in
-1/s), `modes` (one for each real eigenvalue or conjugate pair, with its eigenvector; see
+1/s) with `names` and `eigenvectors` in the same order, `modes` (one for each real eigenvalue or conjugate pair; see
 `spaceplane.dynamics.modes.to_record`), `n_alpha_g_per_rad`, `verdicts` (see `spaceplane.qualities.assess.Verdict`).
 Missing numbers are null.
 """
@@ -19,7 +19,7 @@ from spaceplane.dynamics.derivatives import Derivatives
 from spaceplane.dynamics.derivatives_file import ModesCase
 from spaceplane.dynamics.flightpoint import equilibrium_rates
 from spaceplane.dynamics.linearise import linearise
-from spaceplane.dynamics.modes import identify
+from spaceplane.dynamics.modes import Mode, identify
 from spaceplane.dynamics.modes import to_record as mode_record
 from spaceplane.environment.constants import STANDARD_GRAVITY
 from spaceplane.qualities.assess import assess, load_factor_slope
@@ -40,7 +40,6 @@ def analyse_modes(case: ModesCase) -> dict:
     n_alpha = load_factor_slope(case.derivatives.CL_alpha, case.point.dynamic_pressure, case.reference.area, weight)
     verdicts = assess(modes, case.vehicle_class, case.category, n_alpha)
     rates = equilibrium_rates(case.point, case.mass.mass, case.reference.area)
-    eigenvalues = sorted(np.linalg.eigvals(system.A), key=lambda z: (-round(abs(z), 12), -z.imag))
     return {
         "schema": "spaceplane.modes",
         "schema_version": 1,
@@ -66,11 +65,27 @@ def analyse_modes(case: ModesCase) -> dict:
         "inputs": list(system.inputs),
         "A": system.A.tolist(),
         "B": system.B.tolist(),
-        "eigenvalues": [[float(z.real), float(z.imag)] for z in eigenvalues],
+        **_spectrum(modes),
         "modes": [mode_record(mode) for mode in modes],
         "n_alpha_g_per_rad": n_alpha,
         "verdicts": [verdict_record(verdict) for verdict in verdicts],
     }
+
+
+def _spectrum(modes: tuple[Mode, ...]) -> dict:
+    """Every eigenvalue with its mode's name and its eigenvector, conjugates included."""
+    values, names, vectors = [], [], []
+    for mode in modes:
+        for sign in (1, -1) if mode.oscillatory else (1,):
+            values.append([mode.eigenvalue.real, sign * mode.eigenvalue.imag])
+            names.append(mode.name)
+            vectors.append(
+                {
+                    state: {"magnitude": float(abs(z)), "phase_deg": sign * float(np.degrees(np.angle(z)))}
+                    for state, z in zip(mode.states, mode.eigenvector, strict=True)
+                }
+            )
+    return {"eigenvalues": values, "names": names, "eigenvectors": vectors}
 
 
 def _flight(case: ModesCase) -> dict:
