@@ -185,7 +185,8 @@ def in_browser(html: str, folder: Path, *flags: str) -> dict:
     page = folder / "probe.html"
     page.write_text(html.replace("<head>", start, 1).replace("</body>", PROBE), encoding="utf-8")
     command = [
-        BROWSER, "--headless", "--no-sandbox", "--disable-gpu", "--window-size=1400,1200", "--virtual-time-budget=15000",
+        BROWSER, "--headless", "--no-sandbox", "--disable-gpu", "--window-size=1400,1200",
+        "--virtual-time-budget=15000",
         "--disable-background-networking", "--disable-component-update", "--disable-sync",
         f"--user-data-dir={folder / 'user'}",
         *flags, "--dump-dom", page.as_uri(),

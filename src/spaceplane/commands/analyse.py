@@ -77,7 +77,7 @@ def analyse(
     from spaceplane.report.read import read_result
     from spaceplane.report.summary import print_summary, shortcomings
 
-    with progress_bar() as tell:
+    with progress_bar(_bodies(settings)) as tell:
         pipeline.run(subject, settings, folder, tell)
     result = read_result(folder)
     write_json(result, json_file)
@@ -87,6 +87,16 @@ def analyse(
     if problems:
         typer.echo(f"not good: {'; '.join(problems[:3])}{' ...' if problems[3:] else ''}", err=True)
     return 1 if problems else 0
+
+
+def _bodies(settings: AnalyseSettings) -> int:
+    """How many bodies an analysis meshes: the base, and one for each moved control surface."""
+    from spaceplane.aero.bodies import is_symmetric
+
+    if not settings.controls:
+        return 1
+    surfaces = 3 if is_symmetric(settings.deflections) else 5
+    return 1 + surfaces * (2 if settings.steps.two_step_sizes else 1)
 
 
 def _settings(

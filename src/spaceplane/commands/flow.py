@@ -94,6 +94,7 @@ def flow(
     from spaceplane.aero.flow_case import run_flow  # the numerical stack: after all that can be refused without it
 
     with progress_bar() as tell:
+        tell("mesh", 0, 1, "")
         case = run_flow(surface, machs, alphas, betas, reference, mesh, settings, tell)
     _write(case, surface, vtu, vtp)
     write_json(case.records, json_file)

@@ -11,7 +11,7 @@ import typer
 from spaceplane.commands import options
 from spaceplane.commands.arguments import existing_file, writable_file, write_json
 
-EXAMPLE = "Example: spaceplane modes examples/horus_table_6_1.toml --json modes.json"
+EXAMPLE = "Example: spaceplane modes examples/horus_2b_taem.toml --json modes.json"
 
 
 def modes(
