@@ -191,6 +191,7 @@ def write_tables(found: SensitivityResult, out_dir: Path) -> dict[str, Path]:
 
 
 def _document(found: SensitivityResult) -> dict:
+    labels = [one.label for one in found.variations]
     tables = {by: thesis.agreement_table(found.agreement, by) for by in ("derivative", "parameter", "mach")}
     return {
         "schema": SCHEMA,
@@ -203,6 +204,7 @@ def _document(found: SensitivityResult) -> dict:
         "failures": [{"case": failure.label, "reason": failure.reason} for failure in found.failures],
         "warnings": list(found.warnings),
         "default": {"settings": found.default["settings"], "flight_points": found.default["flight_points"]},
+        "shapes": [_shape("default", found.default), *map(_shape, labels, found.results)],
         "rows": [row.as_row() for row in found.rows],
         "thesis_agreement": {"by": tables, "rows": list(found.agreement)},
     }
@@ -220,6 +222,12 @@ def _cases(study: SensitivityStudy, variations: tuple[Variation, ...]) -> list[C
     for number, shift in enumerate(MESH_SHIFTS[: study.mesh_shifts], start=1):
         cases.append(Case(f"default, mesh shifted ({number})", shifted(cases[0].inputs, shift)))
     return cases + [Case(one.label, inputs({one.parameter: one.value})) for one in variations]
+
+
+def _shape(label: str, result: dict) -> dict:
+    """Size and cost of one shape's computation."""
+    seconds = result.get("solver", {}).get("seconds_by_phase", {})
+    return {"case": label, "cells": result.get("mesh", {}).get("cells"), "seconds": sum(seconds.values())}
 
 
 def _warnings(results: list[tuple[str, dict]]) -> tuple[str, ...]:

@@ -1,0 +1,330 @@
+"""Generated blocks of the pages on sensitivity and the research questions, from stored extracts in docs/data.
+
+python docs/study_blocks.py --store-sensitivity out/sensitivity/sensitivity.json
+python docs/study_blocks.py --store-comparison out/compare/compare.json
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+DATA = Path(__file__).resolve().parent / "data"
+SENSITIVITY, COMPARISON = DATA / "sensitivity.json", DATA / "comparison.json"
+COLUMNS = ("parameter", "side", "parameter_value", "mach", "quantity", "value", "default", "noise", "flow")
+DERIVATIVES = ("CD_alpha", "CL_alpha", "Cm_alpha", "CY_beta", "Cl_beta", "Cn_beta", "CD_M", "CL_M", "Cm_M")
+MODES = ("greatest real part: real part", "lateral oscillation: real part", "lateral oscillation: damping ratio")
+
+
+def table(head: Sequence[str], rows: Sequence[Sequence[object]], align: str = "") -> str:
+    """A Markdown table; `align` has one of l and r per column."""
+    rule = ["---:" if kind == "r" else "---" for kind in align.ljust(len(head), "l")]
+    return "\n".join("| " + " | ".join(str(cell) for cell in row) + " |" for row in (head, rule, *rows))
+
+
+def sensitivity_extract(document: dict) -> dict:
+    """What the pages show of a sensitivity.json."""
+    rows = [
+        [row[name] for name in COLUMNS]
+        for row in document["rows"]
+        if row["kind"] in ("derivative", "level") or row["quantity"].startswith(("greatest", "lateral"))
+    ]
+    settings = document["default"]["settings"]
+    default = [
+        {key: point[key] for key in ("mach", "alpha_deg", "coefficients")}
+        | {"modes": [{key: mode[key] for key in ("name", "eigenvalue")} for mode in point["modes"]]}
+        for point in document["default"]["flight_points"]
+    ]
+    return {
+        "created": document["created"],
+        "version": document["version"],
+        "code": document["code"],
+        "mesh": settings["mesh"],
+        "cells": document["shapes"][0]["cells"],
+        "study": document["study"],
+        "warnings": document["warnings"],
+        "failures": document["failures"],
+        "seconds": [round(shape["seconds"], 1) for shape in document["shapes"]],
+        "columns": COLUMNS,
+        "rows": rows,
+        "default": default,
+        "agreement": document["thesis_agreement"]["by"],
+    }
+
+
+def study() -> dict:
+    """The stored extract of the sensitivity study."""
+    return json.loads(SENSITIVITY.read_text(encoding="utf-8"))
+
+
+def rows_of(document: dict) -> list[dict]:
+    """The extract's rows by column name."""
+    return [dict(zip(document["columns"], row, strict=True)) for row in document["rows"]]
+
+
+def words(parameter: str) -> str:
+    """A parameter without its unit."""
+    return parameter.rpartition("_")[0].replace("_", " ")
+
+
+def unit(parameter: str) -> str:
+    """A parameter's unit."""
+    return parameter.rpartition("_")[2]
+
+
+def study_setup() -> str:
+    """Size of the stored study and how its flows converged."""
+    document = study()
+    shapes = len({(row["parameter"], row["side"], row["parameter_value"]) for row in rows_of(document)})
+    machs = ", ".join(f"{mach:g}" for mach in document["study"]["mach"])
+    seconds = sorted(document["seconds"])
+    return (
+        f"{shapes} changed shapes and the default at Mach {machs}; {document['cells']} cells on the default shape, wall "
+        f"cell {document['mesh']['wall_cell']:.3g} m on all; {seconds[len(seconds) // 2]:.0f} s a shape (median, shared "
+        f"machine). {len(document['warnings'])} flight points of all shapes have a condition that did not converge; "
+        f"{len(document['failures'])} shapes have no result. Numerical code `{document['code']}`."
+    )
+
+
+def _changes(quantity: str, as_percent: bool) -> str:
+    document = study()
+    rows = [row for row in rows_of(document) if row["quantity"] == quantity]
+    machs = document["study"]["mach"]
+    lines = []
+    for parameter in dict.fromkeys(row["parameter"] for row in rows):
+        line = [words(parameter)]
+        for side in ("low", "high"):
+            own = {row["mach"]: row for row in rows if (row["parameter"], row["side"]) == (parameter, side)}
+            value = next((row["parameter_value"] for row in own.values()), None)
+            line.append("-" if value is None else f"{value:g} {unit(parameter)}")
+            line += [_change(own.get(mach), as_percent) for mach in machs]
+        lines.append(line)
+    head = ["parameter"]
+    for side in ("low", "high"):
+        head += [side, *(f"M {mach:g}" for mach in machs)]
+    return table(head, lines, "l" + ("l" + "r" * len(machs)) * 2)
+
+
+def _change(row: dict | None, as_percent: bool) -> str:
+    if row is None or row["value"] is None or row["default"] is None:
+        return "-"
+    if row["flow"] == "failed":
+        return "no flow"
+    gap = row["value"] - row["default"]
+    text = f"{100 * gap / abs(row['default']):+.0f} %" if as_percent else f"{gap:+.3f}"
+    return text if row["noise"] is None or abs(gap) > row["noise"] else f"({text})"
+
+
+def derivative_block(name: str) -> Callable[[], str]:
+    """Change of one derivative with every parameter, %."""
+    return lambda: _changes(name, True)
+
+
+def mode_block(quantity: str) -> Callable[[], str]:
+    """Change of one figure of a mode with every parameter."""
+    return lambda: _changes(quantity, False)
+
+
+def strongest() -> str:
+    """The changes of shape that move each derivative most, by Mach number."""
+    document = study()
+    lines = []
+    for name in DERIVATIVES:
+        line = [f"`{name}`"]
+        for mach in document["study"]["mach"]:
+            own = [
+                row
+                for row in rows_of(document)
+                if (row["quantity"], row["mach"]) == (name, mach)
+                and None not in (row["value"], row["default"])
+                and row["flow"] != "failed"
+                and abs(row["value"] - row["default"]) > (row["noise"] or 0.0)
+            ]
+            own.sort(key=lambda row: -abs(row["value"] - row["default"]))
+            best = [f"{words(row['parameter'])} {row['side']} ({_change(row, True)})" for row in own[:3]]
+            line.append("<br>".join(best) or "none above the mesh's noise")
+        lines.append(line)
+    return table(("derivative", *(f"Mach {mach:g}" for mach in document["study"]["mach"])), lines)
+
+
+def default_noise() -> str:
+    """The default's derivatives and what shifting the mesh changes in them."""
+    document = study()
+    seen = {(row["quantity"], row["mach"]): row for row in rows_of(document)}
+    lines = []
+    for name in DERIVATIVES:
+        line = [f"`{name}`"]
+        for mach in document["study"]["mach"]:
+            row = seen[name, mach]
+            noise = "-" if row["noise"] is None else f"{row['noise']:.2g}"
+            line += [f"{row['default']:.4g}", noise]
+        lines.append(line)
+    head = ["derivative"]
+    for mach in document["study"]["mach"]:
+        head += [f"Mach {mach:g}", "shift"]
+    return table(head, lines, "l" + "rr" * len(document["study"]["mach"]))
+
+
+def agreement_block(by: str) -> Callable[[], str]:
+    """Signs of our changes against the thesis's, counted."""
+
+    def block() -> str:
+        lines = []
+        for line in study()["agreement"][by]:
+            percent = line["agreement_percent"]
+            name = words(line[by]) if by == "parameter" else f"`{line[by]}`" if by == "derivative" else f"{line[by]:g}"
+            share = "-" if percent is None else f"{percent:.0f} %"
+            lines.append((name, line["agree"], line["disagree"], line["too small to tell"], share))
+        return table((by, "same sign", "opposite sign", "too small to tell", "same, of those told"), lines, "lrrrr")
+
+    return block
+
+
+def level_counts() -> str:
+    """How many shapes reach each level of each criterion, and the default's own."""
+    document = study()
+    lines = []
+    rows = [
+        row
+        for row in rows_of(document)
+        if ": " in row["quantity"] and not row["quantity"].startswith(("greatest", "lateral o"))
+    ]
+    rows = [row for row in rows if row["quantity"] not in DERIVATIVES]
+    for quantity in dict.fromkeys(row["quantity"] for row in rows):
+        line = [quantity]
+        for mach in document["study"]["mach"]:
+            own = [row for row in rows if (row["quantity"], row["mach"]) == (quantity, mach)]
+            if not own:
+                line.append("-")
+                continue
+            counts = [sum(row["value"] == level for row in own) for level in (1, 2, 3, 4)]
+            missing = len(own) - sum(counts)
+            shown = " / ".join(map(str, counts)) + (f" ({missing} n/a)" if missing else "")
+            line.append(f"{_level(own[0]['default'])}: {shown}")
+        lines.append(line)
+    return table(("criterion: quantity", *(f"Mach {mach:g}" for mach in document["study"]["mach"])), lines)
+
+
+def _level(level: int | None) -> str:
+    return {None: "n/a", 4: "below 3"}.get(level, str(level))
+
+
+def comparison() -> dict:
+    """The stored comparison of default and optimised shape."""
+    return json.loads(COMPARISON.read_text(encoding="utf-8"))
+
+
+def comparison_setup() -> str:
+    """Meshes and flows of the stored comparison."""
+    document = comparison()
+    flows = "; ".join(
+        f"Mach {point['mach']:g}: alpha {point['alpha_deg'][0]:.3g} deg, {point['altitude_m'][0] / 1000:.3g} km, "
+        f"{point['flow'][0]} / {point['flow'][1]}"
+        for point in document["flight_points"]
+    )
+    return f"{document['mesh'][0]} and {document['mesh'][1]} cells. {flows}."
+
+
+def comparison_derivatives() -> str:
+    """Derivatives of both shapes at all Mach numbers, with the thesis's."""
+    points = comparison()["flight_points"]
+    lines = []
+    for name in DERIVATIVES:
+        for point in points:
+            row = next((row for row in point["derivatives"] if row["name"] == name), None)
+            if row is None:
+                continue
+            ours = [_number(value) for value in row["values"]]
+            printed = [_number(value) for value in row.get("thesis", (None, None))]
+            percent = row["relative_percent"]
+            change = "-" if percent is None else f"{percent:+.0f} %"
+            mark = "" if row["resolved"] in (True, None) else " (within error)"
+            lines.append(
+                (f"`{name}`" if point is points[0] else "", f"{point['mach']:g}", *ours, change + mark, *printed)
+            )
+    head = ("derivative", "Mach", "default", "optimised", "change", "thesis default", "thesis optimised")
+    return table(head, lines, "lrrrrrr")
+
+
+def comparison_modes() -> str:
+    """Modes of both shapes, paired."""
+    lines = []
+    for point in comparison()["flight_points"]:
+        for row in point["modes"]:
+            names = list(dict.fromkeys(mode["name"] for mode in row["modes"] if mode))
+            values = [_eigenvalue(mode) for mode in row["modes"]]
+            times = [_time(mode) for mode in row["modes"]]
+            lines.append((f"{point['mach']:g}", " → ".join(names), values[0], times[0], values[1], times[1]))
+    return table(("Mach", "mode", "default, 1/s", "", "optimised, 1/s", ""), lines, "rlrlrl")
+
+
+def comparison_levels() -> str:
+    """Levels of both shapes at all Mach numbers."""
+    from spaceplane.study.compare_page import tables
+
+    glance = next(item for item in tables(comparison()) if item.title == "Levels at a glance")
+    return table(glance.columns, glance.rows)
+
+
+def _number(value: float | None) -> str:
+    return "-" if value is None else f"{value:.3g}"
+
+
+def _eigenvalue(mode: dict | None) -> str:
+    if mode is None:
+        return "-"
+    re, im = mode["eigenvalue"]
+    return f"{re:.3g} ± {abs(im):.3g}i" if im else f"{re:.3g}"
+
+
+def _time(mode: dict | None) -> str:
+    if mode is None:
+        return ""
+    if mode["half_time_s"] is not None:
+        return f"halves in {mode['half_time_s']:.3g} s"
+    return "" if mode["double_time_s"] is None else f"doubles in {mode['double_time_s']:.3g} s"
+
+
+BLOCKS: dict[str, Callable[[], str]] = {
+    "study setup": study_setup,
+    "study noise": default_noise,
+    "study strongest": strongest,
+    "study cn beta": derivative_block("Cn_beta"),
+    "study cl beta": derivative_block("Cl_beta"),
+    "study cy beta": derivative_block("CY_beta"),
+    "study cm alpha": derivative_block("Cm_alpha"),
+    "study cl alpha": derivative_block("CL_alpha"),
+    "study greatest": mode_block("greatest real part: real part"),
+    "study lateral real": mode_block("lateral oscillation: real part"),
+    "study lateral damping": mode_block("lateral oscillation: damping ratio"),
+    "study levels": level_counts,
+    "study agreement derivative": agreement_block("derivative"),
+    "study agreement parameter": agreement_block("parameter"),
+    "study agreement mach": agreement_block("mach"),
+    "comparison setup": comparison_setup,
+    "comparison derivatives": comparison_derivatives,
+    "comparison modes": comparison_modes,
+    "comparison levels": comparison_levels,
+}
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--store-sensitivity", type=Path, metavar="FILE", help="keep what the pages show of a study")
+    parser.add_argument("--store-comparison", type=Path, metavar="FILE", help="keep a comparison")
+    options = parser.parse_args()
+    DATA.mkdir(exist_ok=True)
+    if options.store_sensitivity:
+        document = sensitivity_extract(json.loads(options.store_sensitivity.read_text(encoding="utf-8")))
+        head = json.dumps({key: value for key, value in document.items() if key != "rows"}, indent=1)[:-2]
+        rows = ",\n  ".join(json.dumps(row) for row in document["rows"])
+        SENSITIVITY.write_text(f'{head},\n "rows": [\n  {rows}\n ]\n}}\n', encoding="utf-8")
+    if options.store_comparison:
+        document = json.loads(options.store_comparison.read_text(encoding="utf-8"))
+        COMPARISON.write_text(json.dumps(document, indent=1) + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
