@@ -25,8 +25,11 @@ def prepare_output(path: str | Path, suffix: str) -> Path:
         raise InputError(f"output file '{path}': must end in {suffix}")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
+        new = not path.exists()
         with path.open("ab"):
             pass
+        if new:  # a later failure must not leave an empty file behind
+            path.unlink()
     except OSError as err:
         raise InputError(f"output file '{path}': cannot be written ({err.strerror})") from err
     return path

@@ -64,6 +64,11 @@ def flap_shell(hinge: Hinge, deflection: float, spacing: float) -> Shell:
         deflection: rad, positive away from `hinge.up`.
         spacing: triangle size wanted, m.
     """
+    return profile_loft(flap_grid(hinge, deflection, spacing))
+
+
+def flap_grid(hinge: Hinge, deflection: float, spacing: float) -> np.ndarray:
+    """[station, point, xyz] sections of the turned flap from one end of its axis to the other, m."""
     across = max(3, int(np.ceil(hinge.length / (1.3 * spacing))))
     u = np.linspace(0, 1, across + 1)
     radius = np.interp(u, np.linspace(0, 1, len(hinge.radius)), hinge.radius)
@@ -84,7 +89,7 @@ def flap_shell(hinge: Hinge, deflection: float, spacing: float) -> Shell:
     end = hinge.length + hinge.skew[1] * np.maximum(d, 0)
     t = start + (end - start) * u[:, None]
     cos, sin = np.cos(deflection), np.sin(deflection)
-    return profile_loft(hinge.place(d * cos + h * sin, t, h * cos - d * sin))
+    return hinge.place(d * cos + h * sin, t, h * cos - d * sin)
 
 
 def bay_cutter(hinge: Hinge) -> Shell:

@@ -83,6 +83,18 @@ def fuselage_shell(layout: Layout, spacing: float) -> Shell:
         layout: derived dimensions.
         spacing: triangle size wanted, m.
     """
+    grid = fuselage_grid(layout, spacing)
+    base = _base_rings(grid[-1], spacing)
+    return capped_loft(np.concatenate([grid, base]), nose_tip(layout), base[-1].mean(axis=0))
+
+
+def nose_tip(layout: Layout) -> np.ndarray:
+    """[xyz] foremost point of the sphere, m."""
+    return np.array([0.0, 0.0, layout.z_nose])
+
+
+def fuselage_grid(layout: Layout, spacing: float) -> np.ndarray:
+    """[station, point, xyz] sections from just behind the nose tip to the rim of the base, m."""
     shape, nose = layout.shape, layout.nose
     perimeter = 2 * (layout.chine + layout.section_height + layout.chine)
     count = 2 * int(np.ceil(0.5 * perimeter / spacing))
@@ -109,10 +121,7 @@ def fuselage_shell(layout: Layout, spacing: float) -> Shell:
     grid[..., 1] = half[:, None] * unit[..., 0]
     grid[..., 2] = keel[:, None] + (crown - keel)[:, None] * unit[..., 1] + layout.z_keel
 
-    cap = _nose_rings(layout, angle, spacing)
-    base = _base_rings(grid[-1], spacing)
-    tip = np.array([0.0, 0.0, layout.z_nose])
-    return capped_loft(np.concatenate([cap, grid, base]), tip, base[-1].mean(axis=0))
+    return np.concatenate([_nose_rings(layout, angle, spacing), grid])
 
 
 def _nose_rings(layout: Layout, angle: np.ndarray, spacing: float) -> np.ndarray:

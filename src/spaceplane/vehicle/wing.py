@@ -81,6 +81,11 @@ def wing_shell(layout: Layout, spacing: float) -> Shell:
         layout: derived dimensions.
         spacing: triangle size wanted, m.
     """
+    return profile_loft(wing_grid(layout, spacing))
+
+
+def wing_grid(layout: Layout, spacing: float) -> np.ndarray:
+    """[station, point, xyz] sections of the right wing from the stub to the winglet's tip, m."""
     shape = layout.shape
     q = _stations(layout, spacing)
     u = np.clip((q - layout.q_tip + TIP_ROUNDING) / TIP_ROUNDING, 0, 1)
@@ -109,7 +114,7 @@ def wing_shell(layout: Layout, spacing: float) -> Shell:
     grid[..., 0] = x_lead[:, None] + x
     grid[..., 1] = y0[:, None] + z * across[:, :1]
     grid[..., 2] = z0[:, None] + z * across[:, 1:]
-    return profile_loft(grid)
+    return grid
 
 
 def _section_directions(layout: Layout, q: np.ndarray) -> np.ndarray:
