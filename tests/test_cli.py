@@ -67,11 +67,13 @@ def test_help_starts_quickly_and_loads_nothing_heavy():
         "heavy = {'numba', 'vtk', 'pyvista', 'scipy', 'xarray', 'matplotlib', 'numpy'} & set(sys.modules); "
         "sys.exit(str(heavy) if heavy else 0)"
     )
-    best = 9.0
-    for _ in range(4):
-        began = time.perf_counter()
+    best = 9.0  # s of processor time, which other work on the machine does not stretch as it does wall time
+    for _ in range(3):
+        before = os.times()
         done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
-        best = min(best, time.perf_counter() - began)
+        after = os.times()
+        spent = (after.children_user - before.children_user) + (after.children_system - before.children_system)
+        best = min(best, spent)
         assert done.returncode == 0, done.stderr
     assert best < 0.5
 
@@ -422,3 +424,88 @@ def test_modes_writes_json(capfd, tmp_path):
     assert len(record["eigenvalues"]) == 9
     code, out, _ = run(capfd, "modes", path, "--json", "-")
     assert json.loads(out)["modes"] == record["modes"]
+
+
+# What `flow` does with a body that it can solve.
+
+
+def wedge(path: Path) -> Path:
+    """ASCII STL of a slender double wedge, 2 m long, 1 m wide and 0.2 m thick."""
+    top, bottom = [(0, -0.5, 0), (1, -0.5, 0.1), (2, -0.5, 0)], (1, -0.5, -0.1)
+    left = [*top, bottom]
+    right = [(x, 0.5, z) for x, _, z in left]
+    points = left + right
+    quads = [(0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)]
+    faces = [t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))]
+    faces += [(0, 2, 1), (0, 3, 2), (4, 5, 6), (4, 6, 7)]
+    text = "solid w\n"
+    for face in faces:
+        text += "facet normal 0 0 0\nouter loop\n"
+        text += "".join("vertex {} {} {}\n".format(*points[k]) for k in face) + "endloop\nendfacet\n"
+    path.write_text(text + "endsolid w\n")
+    return path
+
+
+def test_body_larger_than_the_domain(capfd, tmp_path):
+    body = wedge(tmp_path / "w.stl")
+    line = refused(capfd, "flow", body, "--mach", 2, *FLOW, "--cell", 0.2, "--domain", "0,0,0,1,1,1", naming="domain")
+    assert "larger than the domain" in line
+
+
+def test_bad_domain(capfd, tmp_path):
+    body = wedge(tmp_path / "w.stl")
+    for text in ("1,2,3", "a,b,c,d,e,f", "1,1,1,0,0,0"):
+        refused(capfd, "flow", body, "--mach", 2, *FLOW, "--domain", text, naming="domain")
+
+
+def test_a_wall_thinner_than_two_cells_is_a_warning_with_the_place(capfd, tmp_path):
+    body, record = wedge(tmp_path / "w.stl"), tmp_path / "w.json"
+    files = ["--json", record, "--vtp", tmp_path / "w.vtp", "--vtu", tmp_path / "w.vtu"]
+    code, out, err = run(capfd, "flow", body, "--mach", "2, 3", "--alpha", "0,4", *FLOW, "--cell", 0.2, *files)
+    assert code == 0, err
+    warning = next(line for line in err.splitlines() if line.startswith("warning: "))
+    assert "thinner than two cells" in warning
+    assert "x=" in warning and "y=" in warning and "z=" in warning
+    rows = json.loads(record.read_text())
+    assert [(r["mach"], r["alpha_deg"]) for r in rows] == [(2, 0), (2, 4), (3, 0), (3, 4)]
+    keys = "mach alpha_deg beta_deg CL CD CY Cl Cm Cn CA CN converged residual_drop iterations seconds cells"
+    assert set(keys.split()) | {"CA_forebody", "CA_base", "Cp_max", "Cp_min"} <= set(rows[0])
+    assert rows[1]["CL"] > 0.05 > abs(rows[0]["CL"])
+    assert all(r["converged"] for r in rows) and out.count("converged") == 4
+    import pyvista
+
+    assert pyvista.read(tmp_path / "w.vtp").n_cells > 0
+    assert pyvista.read(tmp_path / "w.vtu").n_cells == rows[0]["cells"]
+
+
+def test_an_unconverged_condition_is_exit_code_1(capfd, tmp_path, monkeypatch):
+    from spaceplane.aero import flow_case
+
+    solved = flow_case.run_flow
+
+    def spoilt(*arguments, **options):
+        case = solved(*arguments, **options)
+        case.records[0].update(converged=False, verdict="oscillating", reason="forces wander")
+        return case
+
+    monkeypatch.setattr(flow_case, "run_flow", spoilt)
+    code, _, err = run(capfd, "flow", wedge(tmp_path / "w.stl"), "--mach", 2, *FLOW, "--cell", 0.25)
+    assert code == 1
+    assert "not good: Mach 2, alpha 0 deg, beta 0 deg: oscillating: forces wander" in err
+
+
+def test_interrupt_from_outside_is_one_line_and_130(tmp_path):
+    import signal
+
+    body = wedge(tmp_path / "w.stl")
+    arguments = ["flow", str(body), "--mach", "2", *FLOW, "--cell", "0.03"]
+    command = [sys.executable, "-m", "spaceplane.cli", *arguments]
+    process = subprocess.Popen(command, stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+    time.sleep(4.0)
+    process.send_signal(signal.SIGINT)
+    out, err = process.communicate(timeout=120)
+    if process.returncode == 0:
+        pytest.skip("the case was finished before the signal came")
+    assert process.returncode == 130
+    assert err.splitlines()[-1] == "error: interrupted"
+    assert "Traceback" not in err and out == ""
