@@ -135,6 +135,8 @@ def test_asymmetric_body_is_meshed_whole():
     mesh = generate(surface, MeshSettings(wall_cell=0.13))
     assert not mesh.record["symmetric"]
     check_body(mesh, surface)
+    with pytest.raises(InputError, match="symmetric"):
+        generate(surface, MeshSettings(wall_cell=0.13, symmetric=True))
 
 
 def test_mirrored_body_without_mirrored_parts_is_meshed_whole():

@@ -60,7 +60,12 @@ def _check(surface: Surface) -> None:
 
 
 def _symmetric(surface: Surface, settings: MeshSettings) -> bool:
-    return is_symmetric(surface, 1) if settings.symmetric is None else settings.symmetric
+    if settings.symmetric is False:
+        return False
+    found = is_symmetric(surface, 1)
+    if settings.symmetric and not found:
+        raise InputError("symmetric: True, but the surface does not mirror itself in y = 0 part by part")
+    return found
 
 
 def _meet_target(surface: Surface, settings: MeshSettings) -> Mesh:

@@ -41,7 +41,8 @@ class MeshSettings:
         fine_edges: half-sized cells also where the wall turns by more than about 50 degrees within a wall cell: leading
             and trailing edges, tips, plates thinner than a cell.
         boxes: refinement boxes; mirrored on a body meshed as half and mirror image.
-        symmetric: mirror the mesh of the right half; None finds out whether the surface is symmetric about y = 0.
+        symmetric: mirror the mesh of the right half; None finds out whether the surface is symmetric about y = 0, False
+            meshes both sides even then.
         offset: (x, z) position of the body's lower corner within a wall cell, as a fraction of the cell.
         max_cells: refuse to build more cells than this (about 1.5 kB of memory each while meshing).
     """
@@ -58,7 +59,7 @@ class MeshSettings:
     boxes: tuple[RefinementBox, ...] = ()
     symmetric: bool | None = None
     offset: tuple[float, float] = (0.38196601125, 0.2360679775)
-    max_cells: int = 12_000_000
+    max_cells: int = 6_000_000
 
     @property
     def graded_wall(self) -> bool:
