@@ -145,7 +145,7 @@ def test_follow_between_flight_points():
 
 
 def test_defective_eigenvalues_have_names_too():
-    """Without aerodynamics speed, height and heading only integrate: double zeros, whose eigenvectors share no state."""
+    """Without aerodynamics speed, height and heading only integrate: double zeros without a common state."""
     modes = identify(from_matrix(np.array([[0.0, 1.0], [0.0, 0.0]]), ("beta", "p")))
     assert [m.name for m in modes] == ["neutral mode", "neutral mode"]
     assert all(np.isfinite(m.participation).all() and m.participation.sum() == pytest.approx(1.0) for m in modes)

@@ -191,6 +191,8 @@ def test_class_changes_the_roll_limit():
     modes = real_root(-1 / 1.2, "p")
     assert of(assess(modes, "III", "A"), "3.3.1.2").level == 1
     assert of(assess(modes, "I", "A"), "3.3.1.2").level == 2
+    assert of(assess(modes, "II-C", "A"), "3.3.1.2").level == 1  # table VII parts II-C from II-L in category C only
+    assert of(assess(modes, "II-C", "C"), "3.3.1.2").level == 2
 
 
 def test_bad_class_and_category():
