@@ -1,14 +1,17 @@
 """The linear model against the nonlinear equations, against independent answers and against the published modes."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+from spaceplane.dynamics import derivatives_file
 from spaceplane.dynamics.derivatives import DAMPING, STATIC
-from spaceplane.dynamics.equations import flight_model, state_rates
+from spaceplane.dynamics.equations import air_gradient, flight_model, state_rates
 from spaceplane.dynamics.flightpoint import flight_point
 from spaceplane.dynamics.linearise import analytic, linearise, numerical
+from spaceplane.dynamics.modes import identify
 from spaceplane.dynamics.statespace import STATES
 from spaceplane.environment import constants
 from spaceplane.errors import InputError
@@ -188,6 +191,18 @@ def test_boeing_747_longitudinal():
     short_period, phugoid = nearest(system, -0.37 + 0.89j), nearest(system, 0.067j)
     assert short_period == pytest.approx(-0.3719 + 0.8875j, abs=2e-3)
     assert phugoid == pytest.approx(-0.003289 + 0.06723j, abs=4e-4)
+
+
+def test_density_gradient_stiffens_the_phugoid():
+    """Uniform air: omega = sqrt(2) g / V (Lanchester). Thinner air above adds g / H to omega^2 (H: scale height)."""
+    case = derivatives_file.read(Path(__file__).parents[2] / "examples" / "boeing747_cruise.toml")
+    omega = {}
+    for gradient in (False, True):
+        system = linearise(case.point, case.mass, case.reference, case.derivatives, density_gradient=gradient)
+        omega[gradient] = next(m for m in identify(system) if m.kind == "phugoid").natural_frequency
+    rise = omega[True] ** 2 - omega[False] ** 2
+    assert omega[False] == pytest.approx(np.sqrt(2) * case.point.gravity / case.point.velocity, rel=0.2)
+    assert rise == pytest.approx(-case.point.gravity * air_gradient(case.point.altitude).log_density, rel=0.15)
 
 
 # Every input acts

@@ -8,7 +8,7 @@ import pytest
 
 from spaceplane.dynamics.linearise import linearise
 from spaceplane.dynamics.mode_names import KINDS, name_mode
-from spaceplane.dynamics.modes import follow, identify, to_record
+from spaceplane.dynamics.modes import identify, to_record
 from spaceplane.dynamics.statespace import StateSpace, from_matrix
 from spaceplane.errors import InputError
 
@@ -130,18 +130,6 @@ def test_eigenvector_is_one():
         assert np.abs(residual).max() < 1e-9
         largest = mode.eigenvector[np.argmax(np.abs(mode.eigenvector))]
         assert largest.imag == pytest.approx(0.0, abs=1e-12) and largest.real > 0
-
-
-def test_follow_between_flight_points():
-    """Modes keep their identity over a small change even when their order changes."""
-    here = identify(linearise(horus.point(), horus.MASS, horus.REFERENCE, horus.derivatives()))
-    there = identify(linearise(horus.point(mach=2.45), horus.MASS, horus.REFERENCE, horus.derivatives()))
-    shuffled = tuple(reversed(there))
-    matched = follow(here, shuffled)
-    assert all(m is not None for m in matched)
-    assert [m.kind for m in matched if m] == [m.kind for m in here]
-    only_fast = follow(here, tuple(m for m in there if m.kind == "pitch_aperiodic"))
-    assert sum(m is not None for m in only_fast) == 2
 
 
 def test_defective_eigenvalues_have_names_too():

@@ -11,7 +11,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg import eig
-from scipy.optimize import linear_sum_assignment
 
 from spaceplane.dynamics.mode_names import PITCH_APERIODIC, Naming, name_mode, without_pitch_stiffness
 from spaceplane.dynamics.statespace import StateSpace
@@ -125,33 +124,6 @@ def _mode(value: complex, right: np.ndarray, share: np.ndarray, naming: Naming, 
         group=naming.group,
         explanation=naming.explanation,
     )
-
-
-def follow(reference: tuple[Mode, ...], other: tuple[Mode, ...]) -> tuple[Mode | None, ...]:
-    """The mode of `other` that continues each mode of `reference`, or None.
-
-    Pairs are chosen together so that the sum of differences is least: half the difference of participations plus the
-    distance of the eigenvalues relative to their size. A pair that differs in all its participation is no pair.
-
-    Args:
-        reference: modes at one flight point or of one shape.
-        other: modes at a neighbouring one, with the same states.
-
-    Returns:
-        [reference mode] of modes of `other`, each at most once.
-    """
-    cost = np.zeros((len(reference), len(other)))
-    for i, a in enumerate(reference):
-        for j, b in enumerate(other):
-            size = abs(a.eigenvalue) + abs(b.eigenvalue)
-            distance = abs(a.eigenvalue - b.eigenvalue) / size if size > 0 else 0.0
-            cost[i, j] = 0.5 * float(np.abs(a.participation - b.participation).sum()) + distance
-    rows, columns = linear_sum_assignment(cost)
-    matched: list[Mode | None] = [None] * len(reference)
-    for i, j in zip(rows, columns, strict=True):
-        if cost[i, j] < 1.0:
-            matched[i] = other[j]
-    return tuple(matched)
 
 
 def to_record(mode: Mode) -> dict:
