@@ -177,6 +177,10 @@ def _checked(name: str, value: Any, default: Any) -> Any:
     """A plain value of the kind that the default has."""
     if name == "mesh.boxes":
         return tuple(RefinementBox(tuple(b["lower"]), tuple(b["upper"]), b["cell"]) for b in value)
+    if name == "mesh.fine_parts":
+        if not isinstance(value, list | tuple) or not all(isinstance(v, str) for v in value):
+            raise InputError(f"{name} = {value!r}: a list of parts' names is needed")
+        return tuple(value)
     if isinstance(value, list | tuple):
         bad = [v for v in value if isinstance(v, bool) or not isinstance(v, int | float)]
         if bad:
