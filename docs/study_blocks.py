@@ -81,10 +81,10 @@ def study_setup() -> str:
     machs = ", ".join(f"{mach:g}" for mach in document["study"]["mach"])
     seconds = sorted(document["seconds"])
     return (
-        f"{shapes} changed shapes and the default at Mach {machs}; {document['cells']} cells on the default shape, wall "
-        f"cell {document['mesh']['wall_cell']:.3g} m on all; {seconds[len(seconds) // 2]:.0f} s a shape (median, shared "
-        f"machine). {len(document['warnings'])} flight points of all shapes have a condition that did not converge; "
-        f"{len(document['failures'])} shapes have no result. Numerical code `{document['code']}`."
+        f"{shapes} changed shapes and the default at Mach {machs}; {document['cells']} cells on the default, wall "
+        f"cell {document['mesh']['wall_cell']:.3g} m on all; {seconds[len(seconds) // 2]:.0f} s a shape (median, "
+        f"busy machine). Flight points with a condition that did not converge: {len(document['warnings'])}; shapes "
+        f"without a result: {len(document['failures'])}. Numerical code `{document['code']}`."
     )
 
 
