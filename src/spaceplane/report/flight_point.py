@@ -43,6 +43,7 @@ def point(p: dict) -> dict:
         "planes": Markup(eigenvalue_planes(modes)),
         "modes": [_mode(m) for m in modes],
         **_eigenvectors(p, modes),
+        "matrices": _matrices(p),
         "verdict_groups": _verdict_groups(verdicts),
         "convergence": [_convergence(r) for r in p.get("convergence") or []],
     }
@@ -183,9 +184,24 @@ def _eigenvectors(p: dict, modes: list[dict]) -> dict:
         rows.append({"name": mode["name"], "grows": mode["eigenvalue"][0] > 0, "cells": cells})
     shown = any(mode.get("eigenvector") for mode in modes)
     return {
+        "form": p.get("form") or "",
         "states": [(GREEK.get(s, s), *STATES.get(s, (s, ""))) for s in states],
         "eigenvectors": rows if shown else [],
     }
+
+
+def _matrices(p: dict) -> list[dict]:
+    """A and B of the linear model with their rows and columns named."""
+    states, inputs = p.get("states") or [], p.get("inputs") or []
+    found = []
+    for name, columns in (("A", states), ("B", inputs)):
+        rows = p.get(name) or []
+        if rows and len(rows) == len(states):
+            named = [
+                (GREEK.get(s, s), [(number(v, 3), v == 0) for v in row]) for s, row in zip(states, rows, strict=True)
+            ]
+            found.append({"name": name, "columns": [GREEK.get(c, words(c)) for c in columns], "rows": named})
+    return found
 
 
 def _verdict_groups(verdicts: list[dict]) -> list[dict]:

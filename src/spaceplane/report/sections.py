@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 
 from markupsafe import Markup
 
@@ -156,19 +157,34 @@ def _flight_rows(points: list[dict]) -> list[dict]:
 
 def _coefficient_rows(points: list[dict]) -> list[dict]:
     rows = []
+    wander = [force_wander(p) for p in points]
     for name, (what, axes) in COEFFICIENTS.items():
         values = [(p.get("coefficients") or {}).get(name) for p in points]
         if any(is_number(v) for v in values):
             text = f"{what} ({axes})" if axes else what
-            rows.append({"symbol": Markup(symbol(name)), "what": text, "cells": [_coefficient(v) for v in values]})
+            cells = [_coefficient(v, w.get(name)) for v, w in zip(values, wander, strict=True)]
+            rows.append({"symbol": Markup(symbol(name)), "what": text, "cells": cells})
     return rows
 
 
-def _coefficient(value: float | None) -> str:
-    """Four significant digits or five decimals; two digits for what is zero by symmetry, so that its size shows."""
+def force_wander(point: dict) -> dict[str, float]:
+    """How far the base condition's force coefficients still wandered at the end; CL and CD from CA and CN."""
+    base = next((r for r in point.get("convergence") or [] if r.get("label") == "base"), {})
+    found = {k: v for k, v in (base.get("window_spread") or {}).items() if is_number(v)}
+    if {"CA", "CN"} <= set(found) and is_number(point.get("alpha_deg")):
+        cosine, sine = (abs(f(math.radians(point["alpha_deg"]))) for f in (math.cos, math.sin))
+        found["CL"] = cosine * found["CN"] + sine * found["CA"]
+        found["CD"] = cosine * found["CA"] + sine * found["CN"]
+    return found
+
+
+def _coefficient(value: float | None, error: float | None) -> Measured:
+    """With its error where known; else four digits or five decimals, and two digits for what is zero by symmetry."""
+    if is_number(error):
+        return measured(value, error)
     if is_number(value) and abs(value) < 1e-4:
-        return number(value, 2)
-    return fixed(value, 5) if is_number(value) and abs(value) < 0.1 else number(value, 4)
+        return Measured(number(value, 2))
+    return Measured(fixed(value, 5) if is_number(value) and abs(value) < 0.1 else number(value, 4))
 
 
 def _derivative_groups(points: list[dict]) -> list[dict]:
