@@ -119,6 +119,9 @@ def test_names_of_divergences():
     assert name_mode(0.5 + 0j, {"sigma": 0.8, "r": 0.2}).name == "aperiodic roll/yaw divergence"
     assert name_mode(0.03 + 0j, {"V": 0.4, "sigma": 0.3, "r": 0.3}).name == "aperiodic pitch/roll divergence"
     assert name_mode(0.1 + 0.2j, {"V": 0.4, "alpha": 0.3, "q": 0.3}).name == "third oscillation (pitch and speed)"
+    assert name_mode(0.1 + 0.2j, {"sigma": 0.5, "p": 0.5}).kind == "roll_spiral_oscillation"
+    assert name_mode(0.1 + 0.9j, {"p": 0.49, "r": 0.4, "beta": 0.11}).kind == "lateral_oscillation"
+    assert name_mode(-0.1 + 0.9j, {"beta": 0.46, "r": 0.33, "p": 0.21}).kind == "dutch_roll"
     assert name_mode(0j, {"R": 1.0}).name == "neutral mode"
     assert len(set(KINDS.values())) == len(KINDS)
 

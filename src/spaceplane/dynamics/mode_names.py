@@ -24,7 +24,7 @@ LATERAL = (*ROLL, *BANK, *YAW, *SIDESLIP, "psi", "chi")
 
 # A motion belongs to a group when the group holds this share of the participation.
 DOMINANT = 0.75
-# Sideslip takes part when it holds this share.
+# Sideslip or bank take part when they hold this share.
 NOTICEABLE = 0.15
 # A bank-dominated divergence faster than level 3 of MIL-F-8785C 3.3.1.3 (4 s to double) is no spiral.
 FASTEST_SPIRAL = math.log(2.0) / 4.0
@@ -116,9 +116,11 @@ def _oscillation(group: str, shares: Mapping[str, float]) -> str:
         if shares["pitch"] >= DOMINANT * longitudinal:
             return "short_period"
         return "phugoid" if shares["path"] >= DOMINANT * longitudinal else "third_oscillation"
-    if shares["sideslip"] < NOTICEABLE:
+    if shares["bank"] >= NOTICEABLE > shares["sideslip"]:
         return "roll_spiral_oscillation"
-    return "dutch_roll" if shares["yaw"] >= shares["roll"] else "lateral_oscillation"
+    return (
+        "dutch_roll" if shares["yaw"] >= shares["roll"] and shares["sideslip"] >= NOTICEABLE else "lateral_oscillation"
+    )
 
 
 def _aperiodic(growth: float, group: str, shares: Mapping[str, float]) -> tuple[str, str]:
