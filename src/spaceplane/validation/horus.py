@@ -14,15 +14,18 @@ from spaceplane.mesh.settings import MeshSettings
 from spaceplane.validation import horus_tables
 from spaceplane.validation.cases import Progress
 from spaceplane.validation.flowcase import solve_body
+from spaceplane.validation.impact import newtonian
 from spaceplane.validation.records import Record
 from spaceplane.vehicle.build import build
 from spaceplane.vehicle.controls import ControlDeflections
 from spaceplane.vehicle.presets import Vehicle, horus_2b
+from spaceplane.vehicle.properties import ReferenceLengths
 
 CASE = "horus"
 MACHS = (1.5, 2.0, 3.0)
 ALPHAS_DEG = (0.0, 5.0, 10.0, 15.0, 20.0)
 LATERAL_MACH, LATERAL_ALPHA_DEG, LATERAL_STEP_DEG = 2.5, 16.6, 1.0
+IMPACT_MACH, IMPACT_ALPHAS_DEG = 20.0, (20.0, 25.0, 30.0, 35.0, 40.0, 45.0)
 BAND = 0.30
 ROUNDING = {"CL": 0.005, "CD": 0.005, "Cm": 0.0005}
 CELL_FINE, CELL_COARSE = 0.125, 0.25
@@ -66,7 +69,8 @@ def run(fine: bool, progress: Progress) -> list[Record]:
     stages = 1 + len(DEFLECTED)
     progress("clean", 0.0)
     clean = coefficients(vehicle, CLEAN, cell)
-    records = static_records(clean) + lateral_records(clean) + moment_center_records(clean)
+    records = static_records(clean) + impact_records(vehicle) + lateral_records(clean)
+    records += moment_center_records(clean, vehicle)
     for index, configuration in enumerate(DEFLECTED):
         progress(configuration.name, (1 + index) / stages)
         records += increment_records(clean, coefficients(vehicle, configuration, cell), configuration)
@@ -133,27 +137,16 @@ def lateral_records(clean: xr.Dataset) -> list[Record]:
     return records
 
 
-def moment_center_records(clean: xr.Dataset) -> list[Record]:
-    """The moment centre used beside the one that fits the published C_m best; shown, not judged."""
-    station, both = fit_moment_center(clean, "x"), fit_moment_center(clean, "xz")
-    used = clean.attrs["moment_center_m"]
-    rows = (
-        ("station, height kept", station.x, used[0], station.after),
-        ("station, with the height free", both.x, used[0], both.after),
-        ("height, with the station free", both.z, used[2], both.after),
-    )
-    common = dict(case=CASE, unit="m", kind="absolute", gate=False, source=horus_tables.SOURCE)
-    common |= dict(condition="Mach 1.5 to 3, alpha 0 to 20 deg", band=0.5)
-    return [
-        Record(
-            quantity=f"moment centre, best fit of C_m: {what}",
-            published=before,
-            computed=_finite(value),
-            note=f"{what}: root-mean-square difference of C_m {station.before:.4f} as used, {after:.4f} at the fit.",
-            **common,
-        )
-        for what, value, before, after in rows
-    ]
+def impact_records(vehicle: Vehicle) -> list[Record]:
+    """The clean vehicle at Mach 20 by impact theory against the base tables: a check of the shape alone."""
+    surface = build(vehicle.shape)
+    records = []
+    for alpha in IMPACT_ALPHAS_DEG:
+        forces = newtonian(surface, IMPACT_MACH, math.radians(alpha), vehicle.reference)
+        for name, computed in (("CL", forces.CL), ("CD", forces.CD)):
+            published = horus_tables.base(name).at(IMPACT_MACH, alpha)
+            records.append(_record(f"{name}, impact theory", IMPACT_MACH, alpha, published, computed, name))
+    return records
 
 
 @dataclass(frozen=True)
@@ -173,31 +166,65 @@ class MomentCenterFit:
     after: float
 
 
-def fit_moment_center(clean: xr.Dataset, vary: str = "xz") -> MomentCenterFit:
-    """Least-squares moment centre over the grid of the tables.
+def fit_moment_center(
+    normal: np.ndarray, axial: np.ndarray, gap: np.ndarray, reference: ReferenceLengths, vary: str = "xz"
+) -> MomentCenterFit:
+    """Least-squares moment centre.
 
     Moving the centre aft by dx and up by dz changes C_m by (C_N dx - C_A dz) / c_ref.
 
     Args:
-        clean: coefficients on `conditions`, with the attributes of `spaceplane.aero.integrate.integrate`.
-        vary: "x", "z" or "xz": which coordinates, in m, may move.
+        normal: [row] computed C_N.
+        axial: [row] computed C_A.
+        gap: [row] published less computed C_m; rows that are not finite are left out.
+        reference: its moment centre, m, is the one that C_m was computed about.
+        vary: "x", "z" or "xz": which coordinates may move.
     """
-    count = len(MACHS) * len(ALPHAS_DEG)
-    table = horus_tables.base("Cm")
-    gap = np.array([table.at(mach, alpha) for mach, alpha in _grid()]) - clean.Cm.values[:count]
-    chord, center = clean.attrs["c_ref_m"], clean.attrs["moment_center_m"]
-    columns = {"x": clean.CN.values[:count] / chord, "z": -clean.CA.values[:count] / chord}
-    matrix = np.column_stack([columns[name] for name in vary])
+    columns = {"x": normal / reference.chord, "z": -axial / reference.chord}
     known = np.isfinite(gap)
-    shift, *_ = np.linalg.lstsq(matrix[known], gap[known], rcond=None)
-    move = dict(zip(vary, shift, strict=True))
-    rest = gap[known] - matrix[known] @ shift
+    matrix = np.column_stack([columns[name] for name in vary])[known]
+    shift, *_ = np.linalg.lstsq(matrix, gap[known], rcond=None)
+    move = dict(zip(vary, shift.tolist(), strict=True))
+    center = reference.moment_center
     return MomentCenterFit(
         x=center[0] + move.get("x", 0.0),
         z=center[2] + move.get("z", 0.0),
         before=float(np.sqrt(np.mean(gap[known] ** 2))),
-        after=float(np.sqrt(np.mean(rest**2))),
+        after=float(np.sqrt(np.mean((gap[known] - matrix @ shift) ** 2))),
     )
+
+
+def moment_center_records(clean: xr.Dataset, vehicle: Vehicle) -> list[Record]:
+    """The moment centre used beside the ones that fit the published C_m best; shown, not judged."""
+    count, table, reference = len(_grid()), horus_tables.base("Cm"), vehicle.reference
+    gap = np.array([table.at(mach, alpha) for mach, alpha in _grid()]) - clean.Cm.values[:count]
+    flow = (clean.CN.values[:count], clean.CA.values[:count], gap)
+    surface = build(vehicle.shape)
+    struck = [newtonian(surface, IMPACT_MACH, math.radians(alpha), reference) for alpha in IMPACT_ALPHAS_DEG]
+    impact_gap = [table.at(IMPACT_MACH, a) - f.Cm for a, f in zip(IMPACT_ALPHAS_DEG, struck, strict=True)]
+    impact = (np.array([f.CN for f in struck]), np.array([f.CA for f in struck]), np.array(impact_gap))
+    low, high = "flow, Mach 1.5 to 3, alpha 0 to 20 deg", "impact theory, Mach 20, alpha 20 to 45 deg"
+    fits = (
+        ("station, height kept", 0, low, fit_moment_center(*flow, reference, "x")),
+        ("station, height free", 0, low, fit_moment_center(*flow, reference, "xz")),
+        ("height, station free", 2, low, fit_moment_center(*flow, reference, "xz")),
+        ("station, height kept", 0, high, fit_moment_center(*impact, reference, "x")),
+    )
+    return [
+        Record(
+            case=CASE,
+            quantity=f"moment centre by C_m: {what}",
+            condition=f"{where}; rms difference of C_m {fit.before:.4f} before, {fit.after:.4f} after",
+            unit="m",
+            published=reference.moment_center[axis],
+            computed=_finite(fit.x if axis == 0 else fit.z),
+            band=0.5,
+            kind="absolute",
+            source=horus_tables.SOURCE,
+            gate=False,
+        )
+        for what, axis, where, fit in fits
+    ]
 
 
 def _grid() -> list[tuple[float, float]]:

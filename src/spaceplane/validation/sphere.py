@@ -20,10 +20,7 @@ MACHS = (0.5, 1.5, 2.0, 3.0, 5.0, 10.0)
 RAYLEIGH = "Rayleigh's pitot formula (NACA 1135)"
 BILLIG = "Billig (1967)"
 LOTH = "Loth et al. (2021), Re 1e6"
-DRAG_NOTE = (
-    "Sphere drag: the published values include viscous separation, which an inviscid method does not own. Above Mach 1 "
-    "the pressure on the front half decides; the base part is named separately and is not judged."
-)
+DRAG_NOTE = "The published value includes viscous separation at the base."
 PARADOX = "d'Alembert's paradox"
 PARADOX_NOTE = (
     "Mach 0.5: an inviscid attached flow has no drag (d'Alembert), so what remains is numerical error; the measured "
@@ -74,9 +71,9 @@ def sphere_records(solution: Solution) -> list[Record]:
             records.append(
                 row("shock stand-off / radius", standoff_billig(mach), standoff(solution, index), 0.1, BILLIG)
             )
-            drag = dict(gate=False, note=DRAG_NOTE)
-            records.append(row("C_D", DRAG_LOTH[float(mach)], values.CD, 0.1, LOTH, **drag))
-            records.append(row("C_D of the front half", DRAG_LOTH[float(mach)], values.CA_forebody, 0.1, LOTH, **drag))
+            front, base = float(values.CA_forebody), float(values.CA_base)
+            share = f"{where}: C_D {front:.3f} of the front half and {base:.3f} of the base."
+            records.append(row("C_D", DRAG_LOTH[float(mach)], values.CD, 0.1, LOTH, note=f"{share} {DRAG_NOTE}"))
         else:
             records.append(row("C_D", 0.0, values.CD, 0.02, PARADOX, kind="absolute", note=PARADOX_NOTE))
     return records
