@@ -509,3 +509,59 @@ def test_interrupt_from_outside_is_one_line_and_130(tmp_path):
     assert process.returncode == 130
     assert err.splitlines()[-1] == "error: interrupted"
     assert "Traceback" not in err and out == ""
+
+
+# The whole chain, small.
+
+
+@pytest.fixture(scope="module")
+def analysed(tmp_path_factory) -> tuple[int, str, str, Path]:
+    """Exit code, output and folder of a coarse analysis of one flight point."""
+    folder = tmp_path_factory.mktemp("analysed") / "out"
+    arguments = ["analyse", "horus-2b", "--mach", "2.5", "--cells", "12000", "--no-controls", "--out", str(folder)]
+    command = [sys.executable, "-m", "spaceplane.cli", *arguments]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=400, check=False)
+    return done.returncode, done.stdout, done.stderr, folder
+
+
+def test_analyse_writes_everything_and_says_what_it_found(analysed):
+    code, out, err, folder = analysed
+    result = json.loads((folder / "result.json").read_text())
+    verdicts = {r["verdict"] for p in result["flight_points"] for r in p["convergence"]}
+    assert code == (0 if verdicts == {"converged"} else 1), err
+    written = {path.name for path in folder.iterdir()}
+    assert written == {"result.json", "aero.nc", "geometry.stl", "surface.vtp", "report.html"}
+    assert "Cm_alpha" in out and "MIL-F-8785C" in out and "report.html" in out
+    assert "Traceback" not in err
+
+
+def test_report_export_and_compare_read_what_analyse_wrote(capfd, analysed, tmp_path):
+    folder = analysed[-1]
+    (folder / "report.html").unlink()
+    assert run(capfd, "report", folder)[0] == 0
+    assert (folder / "report.html").stat().st_size > 100_000
+    code, out, _ = run(capfd, "export", "csv", folder, "--out", tmp_path, "--json", "-")
+    assert code == 0
+    assert {Path(p).name for p in json.loads(out)["files"]} == {
+        "coefficients.csv", "derivatives.csv", "modes.csv", "verdicts.csv",
+    }  # fmt: skip
+    assert run(capfd, "export", "netcdf", folder, "--out", tmp_path)[0] == 0
+    result = folder / "result.json"
+    code, out, _ = run(capfd, "compare", result, result, "--json", tmp_path / "c.json")
+    assert code == 0
+    point = json.loads((tmp_path / "c.json").read_text())["flight_points"][0]
+    assert all(row["difference"] == 0 for row in point["derivatives"])
+
+
+def test_geometry_writes_what_it_says(capfd, tmp_path):
+    file = tmp_path / "sub" / "b.stl"
+    deflect = ["--deflect", "elevon_left=-10", "body_flap=15"]
+    code, out, _ = run(
+        capfd, "geometry", "horus-2b", "--set", "wing_width_m=3.5", *deflect, "--out", file, "--json", "-"
+    )
+    assert code == 0
+    record = json.loads(out)
+    assert record["deflections_deg"]["elevon_left"] == pytest.approx(-10)
+    assert file.stat().st_size == 84 + 50 * record["triangles"]
+    assert record["span_m"] > 13.2
+    assert [p.name for p in file.parent.iterdir()] == ["b.stl"]
