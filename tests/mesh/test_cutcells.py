@@ -166,6 +166,14 @@ def test_open_surface_is_refused():
         cut(body.vertices, body.faces[:-1])
 
 
+def test_slight_overlap_is_counted():
+    """Two boxes that overlap by a hundredth of a cell, where no grid node sees it."""
+    boxes = [bodies.box(4, 4, 4), bodies.box(4, 2, 2, at=(3.99, 0.3, 0.2))]
+    points = np.vstack([b.vertices for b in boxes]) + 0.37
+    result, _ = cut(points, np.vstack([boxes[0].faces, boxes[1].faces + 8]))
+    assert 0 < result.folded_edges < 20
+
+
 def test_heavily_folded_surface_is_refused():
     """Two copies of a body laid over each other have no clear inside."""
     body = trimesh.creation.icosphere(3, 8.0)

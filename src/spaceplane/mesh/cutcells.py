@@ -11,6 +11,7 @@ from spaceplane.errors import InputError
 from spaceplane.mesh import regions as rg
 from spaceplane.mesh import volumes as vol
 from spaceplane.mesh.subdivide import Subdivision, subdivide
+from spaceplane.mesh.unionfind import bucket
 
 
 @dataclass(frozen=True)
@@ -34,7 +35,7 @@ class CutCells:
         cut: [i, j, k] bool, cells that are cut.
         fluid: [i, j, k] bool, nodes in the fluid.
         split_cells: cells with more than one control volume.
-        folded_edges: cell edges whose ends are neither clearly in the body nor in the fluid.
+        folded_edges: cell edges along which the surface lies inside itself.
         gauss_error: largest difference between a volume's sizes from the three coordinate directions.
         thin: [n, (x, y, z, thickness, triangle)] places where a grid line leaves the body within four cells.
         lines: [n] triangle of every crossing examined for thickness.
@@ -99,7 +100,7 @@ def cut_cells(points: np.ndarray, triangles: np.ndarray, shape: tuple, right_of:
     tagged = np.flatnonzero((surface.edge_tag >= 0) & right)
     owner = cell_index[tuple(surface.edge_place[tagged].T)]
     segment_key[tagged] = np.where(owner >= 0, 3 * owner + surface.edge_tag[tagged], -1)
-    segments = (*rg.bucket(segment_key, 3 * len(cells)), surface.edge_ends)
+    segments = (*bucket(segment_key, 3 * len(cells)), surface.edge_ends)
     region_face, region_area, region_moment, segment_region, slot_start, slot_region = rg.face_regions(
         axes, corner, cell_index, states, surface.points, segments, intervals
     )
@@ -176,9 +177,9 @@ def _intervals(surface: Subdivision, cells: np.ndarray, cell_index: np.ndarray, 
     """Fluid intervals of the cut cells' lower edges, and the number of folded edges."""
     owner = cell_index[tuple(surface.crossing_place.T)]
     key = np.where(owner >= 0, 3 * owner + surface.crossing_axis, -1).astype(np.int32)
-    start, items = rg.bucket(key, 3 * len(cells))
+    start, items = bucket(key, 3 * len(cells))
     *intervals, folded = rg.edge_intervals(
-        cells, states, surface.points, 0, start, items, surface.crossing_vertex, surface.crossing_sign
+        cells, states, surface.points, start, items, surface.crossing_vertex, surface.crossing_sign
     )
     return tuple(intervals), folded
 

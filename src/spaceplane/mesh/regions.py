@@ -9,43 +9,10 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
+from spaceplane.mesh.unionfind import find, unite
 
-@njit(cache=True)
-def bucket(keys, buckets):
-    """Counting sort: offsets [bucket + 1] and the item numbers ordered by key; negative keys are left out."""
-    start = np.zeros(buckets + 1, np.int32)
-    for key in keys:
-        if key >= 0:
-            start[key + 1] += 1
-    for n in range(buckets):
-        start[n + 1] += start[n]
-    fill = start[:-1].copy()
-    items = np.empty(start[buckets], np.int32)
-    for n in range(len(keys)):
-        if keys[n] >= 0:
-            items[fill[keys[n]]] = n
-            fill[keys[n]] += 1
-    return start, items
-
-
-@njit(cache=True)
-def find(parent, n):
-    """Root of `n` in a union-find forest, halving the path."""
-    while parent[n] != n:
-        parent[n] = parent[parent[n]]
-        n = parent[n]
-    return n
-
-
-@njit(cache=True)
-def unite(parent, a, b):
-    """Join the trees of `a` and `b`; the smaller root stays."""
-    a = find(parent, a)
-    b = find(parent, b)
-    if a < b:
-        parent[b] = a
-    elif b < a:
-        parent[a] = b
+# Overlap along a grid line, in cells, that is not round-off.
+OVERLAP = 1e-7
 
 
 @njit(cache=True)
@@ -65,7 +32,7 @@ def node_states(shape, vertex_place, line_axis, sign):
 
 
 @njit(cache=True)
-def edge_intervals(cells, states, points, low, cross_start, cross_items, vertex, sign):
+def edge_intervals(cells, states, points, cross_start, cross_items, vertex, sign):
     """Fluid intervals of the three lower edges of every cut cell.
 
     An interval begins at a fluid node or an entering crossing and ends at a leaving crossing or a fluid node; sorted
@@ -73,7 +40,7 @@ def edge_intervals(cells, states, points, low, cross_start, cross_items, vertex,
 
     Returns:
         start [3 * cell + axis + 1], begin [interval], end [interval]: vertices, -1 the lower node, -2 the upper node.
-        The number of edges whose node state is neither 0 nor 1 (folded surfaces).
+        The number of edges whose node state is neither 0 nor 1, or whose crossings do not alternate (folded surfaces).
     """
     count = len(cells)
     start = np.empty(3 * count + 1, np.int32)
@@ -123,6 +90,11 @@ def edge_intervals(cells, states, points, low, cross_start, cross_items, vertex,
                 enter[entering] = -2
                 entering += 1
             for m in range(min(entering, leaving)):
+                # an interval that ends before it begins by more than round-off lies where the surface overlaps itself
+                lower = 0.0 if enter[m] == -1 else (1.0 if enter[m] == -2 else points[enter[m], axis] - cells[c, axis])
+                upper = 0.0 if leave[m] == -1 else (1.0 if leave[m] == -2 else points[leave[m], axis] - cells[c, axis])
+                if upper < lower - OVERLAP and 0 <= below <= 1:
+                    folded += 1
                 if total < capacity:
                     begin[total] = enter[m]
                     end[total] = leave[m]

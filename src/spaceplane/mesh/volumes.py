@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from spaceplane.mesh.regions import find, unite
+from spaceplane.mesh.unionfind import find, unite
 
 
 @njit(cache=True)

@@ -1,0 +1,44 @@
+"""Union-find and counting sort, compiled: what joins pieces into regions and control volumes."""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+
+@njit(cache=True)
+def bucket(keys, buckets):
+    """Counting sort: offsets [bucket + 1] and the item numbers ordered by key; negative keys are left out."""
+    start = np.zeros(buckets + 1, np.int32)
+    for key in keys:
+        if key >= 0:
+            start[key + 1] += 1
+    for n in range(buckets):
+        start[n + 1] += start[n]
+    fill = start[:-1].copy()
+    items = np.empty(start[buckets], np.int32)
+    for n in range(len(keys)):
+        if keys[n] >= 0:
+            items[fill[keys[n]]] = n
+            fill[keys[n]] += 1
+    return start, items
+
+
+@njit(cache=True)
+def find(parent, n):
+    """Root of `n` in a union-find forest, halving the path."""
+    while parent[n] != n:
+        parent[n] = parent[parent[n]]
+        n = parent[n]
+    return n
+
+
+@njit(cache=True)
+def unite(parent, a, b):
+    """Join the trees of `a` and `b`; the smaller root stays."""
+    a = find(parent, a)
+    b = find(parent, b)
+    if a < b:
+        parent[b] = a
+    elif b < a:
+        parent[a] = b
