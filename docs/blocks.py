@@ -272,13 +272,15 @@ def validation_horus() -> str:
     return "\n".join(parts)
 
 
-def horus_lateral() -> str:
-    """The lateral point and the moment centre that fits the published C_m."""
-    from spaceplane.validation import markdown_table, read
+def horus_of_unit(unit: str) -> Callable[[], str]:
+    """The rows of the HORUS-2B case with this unit: 1/deg the lateral point, m the moment centre."""
 
-    records = [record for record in read(validation_path("horus")) if record.unit != "-"]
-    notes = dict.fromkeys(record.note for record in records if record.note)
-    return markdown_table(records) + "".join(f"\n- {note}" for note in notes)
+    def block() -> str:
+        from spaceplane.validation import markdown_table, read
+
+        return markdown_table([record for record in read(validation_path("horus")) if record.unit == unit])
+
+    return block
 
 
 def trust() -> str:
@@ -419,7 +421,8 @@ BLOCKS: dict[str, Callable[[], str]] = {
     "validation sphere": validation_block("sphere"),
     "validation hb2": validation_block("hb2"),
     "validation horus": validation_horus,
-    "validation horus lateral": horus_lateral,
+    "validation horus lateral": horus_of_unit("1/deg"),
+    "moment centre": horus_of_unit("m"),
     "dynamics validation": dynamics_validation,
     "alpha schedule": alpha_schedule,
     "gas validity": gas_validity,
