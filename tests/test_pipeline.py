@@ -150,6 +150,19 @@ def test_asymmetric_deflections_solve_every_surface_and_both_sideslips(monkeypat
     assert abs(float(found.coefficients.Cl.sel(part="total")[0])) > 1e-3
 
 
+def test_two_step_sizes_halve_every_step_and_shrink_the_truncation_error(monkeypatch, analysis):
+    monkeypatch.setattr(bodies, "solve", newtonian())
+    steps = replace(SETTINGS.steps, two_step_sizes=True)
+    found = analyse(horus_2b(), replace(SETTINGS, mach=(2.5,), steps=steps))
+    assert len(found.plan.conditions) == 1 + 2 * 5
+    halves = [math.degrees(run.step) for run in found.control_runs]
+    assert halves == pytest.approx([10.0, 5.0] * 3)
+    one, two = (data.derivatives.sel(part="total").isel(point=-1) for data in (analysis, found))
+    for name in ("CL_alpha", "CD_alpha", "CD_M", "CY_beta"):
+        assert float(two[name]) == pytest.approx(float(one[name]), rel=0.05)
+    assert float(two.CD_alpha_error) < 0.1 * float(one.CD_alpha_error)
+
+
 def test_a_failed_condition_poisons_what_rests_on_it_and_says_so(monkeypatch, tmp_path):
     monkeypatch.setattr(bodies, "solve", newtonian(failing={1, 6}))  # Mach 1.5 alpha+, Mach 2.5 base
     settings = AnalyseSettings(mach=(1.5, 2.5), controls=False, mesh=SETTINGS.mesh)

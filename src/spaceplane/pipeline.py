@@ -57,7 +57,7 @@ class AnalyseSettings:
         controls: whether control derivatives are computed (one more body and mesh per surface).
         control_step: deflection step of control derivatives, rad.
         steps: steps of the stability derivatives.
-        mesh: how to mesh.
+        mesh: how to mesh; the default, a wall cell of 0.2 m, is meant to answer in about two minutes on two cores.
         flow: how to solve.
         form: form of the linear model.
         vehicle_class: class of MIL-F-8785C.
@@ -73,7 +73,7 @@ class AnalyseSettings:
     controls: bool = True
     control_step: float = math.radians(10.0)
     steps: DerivativeSteps = field(default_factory=DerivativeSteps)
-    mesh: MeshSettings = field(default_factory=lambda: MeshSettings(target_cells=200_000))
+    mesh: MeshSettings = field(default_factory=lambda: MeshSettings(wall_cell=0.2))
     flow: FlowSettings = field(default_factory=FlowSettings)
     form: str = "rigid-body"
     vehicle_class: str = "III"

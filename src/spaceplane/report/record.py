@@ -218,7 +218,8 @@ def dynamics(found: PointAnalysis) -> dict:
 def mesh(analysis: Analysis) -> dict:
     """What the generator has to say of the base mesh, and its size against the surface."""
     made = analysis.body.solution.mesh
-    return {**made.record, "cells": made.cells, "seconds": analysis.body.seconds["mesh"]}
+    kept = {key: value for key, value in made.record.items() if key not in ("settings", "errors_by_part")}
+    return {**kept, "cells": made.cells, "seconds": analysis.body.seconds["mesh"]}
 
 
 def solver(analysis: Analysis) -> dict:
