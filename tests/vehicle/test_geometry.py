@@ -12,7 +12,7 @@ from spaceplane.vehicle.flaps import elevon_hinge, rudder_hinge
 from spaceplane.vehicle.layout import Layout
 from spaceplane.vehicle.shape import PARAMETERS, ShapeParameters
 from spaceplane.vehicle.surface import Surface
-from spaceplane.vehicle.validity import GeometryError, check, component_count, edge_faults, genus
+from spaceplane.vehicle.validity import GeometryError, check, component_count, edge_faults, genus, overlaps
 
 COARSE = 0.25  # m, triangle size that keeps these tests quick
 
@@ -298,3 +298,17 @@ def test_gate_refuses_damaged_surfaces():
     )
     with pytest.raises(GeometryError, match="2 pieces"):
         check(twice, "test")
+
+
+def test_overlap_is_found_by_rays_and_not_invented():
+    good = shaped()
+    assert len(overlaps(good, 0.1)) == 0
+    shifted = Surface(
+        np.concatenate([good.points, good.points + np.array([0.0, 0.0, 0.5])]),
+        np.concatenate([good.triangles, good.triangles + len(good.points)]),
+        np.concatenate([good.part, good.part]),
+        good.part_names,
+    )
+    places = overlaps(shifted)
+    assert len(places) > 100
+    assert (places >= shifted.bounds[0] - 1e-9).all() and (places <= shifted.bounds[1] + 1e-9).all()

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from spaceplane.vehicle.layout import ELEVON_ROOT_GAP, TIP_THICKNESS_RATIO, Layout
-from spaceplane.vehicle.lofts import Shell, box, profile_loft
+from spaceplane.vehicle.lofts import CAMBER, Shell, box, profile_loft
 from spaceplane.vehicle.validity import GeometryError
 
 KNUCKLE_RATIO = 0.95  # knuckle radius over the local half-thickness
@@ -72,6 +72,7 @@ def flap_grid(hinge: Hinge, deflection: float, spacing: float) -> np.ndarray:
     across = max(3, int(np.ceil(hinge.length / (1.3 * spacing))))
     u = np.linspace(0, 1, across + 1)
     radius = np.interp(u, np.linspace(0, 1, len(hinge.radius)), hinge.radius)
+    radius = radius + CAMBER * 4 * u * (1 - u)
     # The upper tangent from the edge point (chord, edge) to the knuckle leaves it at this angle from `aft`.
     lean = np.arctan2(hinge.edge, hinge.chord)
     touch = lean + np.arccos(radius / np.hypot(hinge.chord, hinge.edge))

@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 
 from spaceplane.vehicle.layout import Layout
-from spaceplane.vehicle.lofts import Shell, capped_loft
+from spaceplane.vehicle.lofts import CAMBER, Shell, capped_loft
 
 CHINE_ROUNDING = 0.3  # m, length taken off both legs of the chine's corner
 NOSE_CAP_RADII = 2.0  # the part called nose ends this many nose radii behind the tip
@@ -121,6 +121,8 @@ def fuselage_grid(layout: Layout, spacing: float) -> np.ndarray:
     grid[..., 1] = half[:, None] * unit[..., 0]
     grid[..., 2] = keel[:, None] + (crown - keel)[:, None] * unit[..., 1] + layout.z_keel
 
+    t = np.clip((x - shape.nosecone_length_m) / shape.fuselage_length_m, 0, 1)
+    grid[..., 1:] *= 1 + CAMBER * (t * (1 - t))[:, None, None]
     return np.concatenate([_nose_rings(layout, angle, spacing), grid])
 
 
@@ -143,4 +145,6 @@ def _base_rings(rim: np.ndarray, spacing: float) -> np.ndarray:
     centre[1] = 0.0
     rings = max(4, int(0.5 * np.ptp(rim[:, 1]) / (1.5 * spacing)))
     scale = 1 - np.arange(1, rings) / rings
-    return centre + scale[:, None, None] * (rim - centre)
+    base = centre + scale[:, None, None] * (rim - centre)
+    base[..., 0] += 10 * CAMBER * (1 - scale[:, None] ** 2)
+    return base

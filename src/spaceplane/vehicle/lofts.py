@@ -6,6 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+CAMBER = 1e-4
+"""m, by which flat and straight skins are cambered.
+
+A union merges the triangles of faces that are flat to round-off and leaves slivers as long as the vehicle; a tenth of a
+millimetre of camber keeps the triangles that were asked for.
+"""
+
 
 @dataclass(frozen=True)
 class Shell:

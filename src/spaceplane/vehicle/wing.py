@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from spaceplane.vehicle.layout import STUB, Layout
-from spaceplane.vehicle.lofts import Shell, profile_loft
+from spaceplane.vehicle.lofts import CAMBER, Shell, profile_loft
 
 NOSE_POINTS = 9  # on each quarter of the leading edge
 APEX_RADIUS_RATIO = 0.3  # leading-edge radius at the strake's apex over that outboard: the apex grows out of the chine
@@ -108,6 +108,8 @@ def wing_grid(layout: Layout, spacing: float) -> np.ndarray:
     v = np.clip((q - layout.q_tip + 0.5 * thick) / (0.5 * thick), 0, 1)
     middle = 0.5 * (z + z[:, ::-1])
     z = middle + np.sqrt(1 - v**2)[:, None] * (z - middle)
+    share = x / chord[:, None]
+    z = z + CAMBER * (4 * share * (1 - share) + (q / layout.q_tip)[:, None] ** 2)
     y0, z0, _ = layout.path(q)
     across = _section_directions(layout, q)
     grid = np.empty((*x.shape, 3))
