@@ -21,10 +21,15 @@ DOCS = Path(__file__).resolve().parent
 sys.path.insert(0, str(DOCS))
 
 import blocks  # noqa: E402  (beside this script)
+import study_blocks  # noqa: E402
 
 PAGES = [*sorted(DOCS.rglob("*.md")), DOCS.parent / "README.md"]
 PATTERN = re.compile(r"(<!-- generated: ([a-z0-9 -]+) -->\n).*?(<!-- end generated -->)", re.DOTALL)
-BLOCKS: dict[str, Callable[[], str]] = blocks.BLOCKS
+BLOCKS: dict[str, Callable[[], str]] = blocks.BLOCKS | study_blocks.BLOCKS
+
+
+MISSING: dict[str, Path] = {}
+"""Blocks left as they are because the stored result they show does not exist."""
 
 
 def rebuilt(text: str) -> str:
@@ -34,7 +39,12 @@ def rebuilt(text: str) -> str:
         name = match[2]
         if name not in BLOCKS:
             raise SystemExit(f"unknown generated block {name!r}; known: {', '.join(BLOCKS)}")
-        return f"{match[1]}\n{BLOCKS[name]().strip()}\n\n{match[3]}"
+        try:
+            text = BLOCKS[name]().strip()
+        except FileNotFoundError as error:
+            MISSING[name] = Path(error.filename)
+            return match[0]
+        return f"{match[1]}\n{text}\n\n{match[3]}"
 
     return PATTERN.sub(block, text)
 
@@ -55,10 +65,12 @@ def main() -> int:
     if options.store_validation:
         blocks.store_validation(options.store_validation)
     old = stale()
+    for name, path in MISSING.items():
+        print(f"block {name!r} is left as it is: {path.relative_to(DOCS.parent)} does not exist")
     if options.check:
         for page in old:
             print(f"out of date: {page.relative_to(DOCS.parent)}; run python docs/generate.py")
-        return 1 if old else 0
+        return 1 if old or MISSING else 0
     for page in old:
         page.write_text(rebuilt(page.read_text(encoding="utf-8")), encoding="utf-8")
         print(f"rewrote {page.relative_to(DOCS.parent)}")
