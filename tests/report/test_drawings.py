@@ -64,3 +64,11 @@ def test_bars_share_their_zero_and_scale():
     assert float(positive.get("width")) == pytest.approx(2 * float(negative.get("width")), rel=0.01)
     assert float(negative.get("x")) + float(negative.get("width")) == pytest.approx(float(positive.get("x")), abs=0.2)
     assert plots.derivative_bars([("a", None)]) == ""
+
+
+def test_all_flight_points_share_one_plane():
+    points = [flight_point(f"Mach {m}", m, 13000, 9.0) for m in (0.8, 1.5, 2.5)]
+    root = ElementTree.fromstring(plots.eigenvalues_together(points))
+    marks = [e for e in root.iter() if "mode-marker" in (e.get("class") or "")]
+    assert len(marks) == sum(len(p["modes"]) for p in points)
+    assert plots.eigenvalues_together(points[:1]) == ""  # nothing to compare

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from markupsafe import Markup
 
-from spaceplane.report.names import GREEK, STATES, split_derivative, symbol, words
+from spaceplane.report.names import GREEK, STATES, greek, split_derivative, symbol, words
 from spaceplane.report.numbers import MINUS, MISSING, duration, fixed, grouped, is_number, measured, number
 from spaceplane.report.plots import convergence_plot, derivative_bars, eigenvalue_planes, eigenvalue_text, phase_clock
 from spaceplane.report.read import level_text
@@ -155,7 +155,7 @@ def _mode(mode: dict) -> dict:
         "time": time_text(mode),
         "damping": number(mode.get("damping_ratio"), 3),
         "frequency": number(mode.get("natural_frequency_rads") if mode["eigenvalue"][1] else None, 3),
-        "explanation": mode.get("explanation") or "",
+        "explanation": greek(mode.get("explanation") or ""),
     }
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 
 GREEK = {"alpha": "α", "beta": "β", "gamma": "γ", "sigma": "σ", "mu": "μ", "phi": "φ", "psi": "ψ", "theta": "θ"}
@@ -67,6 +68,11 @@ def symbol(name: str) -> str:
     if not variable:
         return head + "</sub>"
     return f"{head}<span class=wrt>{_VARIABLES.get(variable, ' ' + words(variable))}</span></sub>"
+
+
+def greek(text: str) -> str:
+    """Text with the names of angles as Greek letters."""
+    return re.sub(rf"\b({'|'.join(GREEK)})\b", lambda found: GREEK[found.group(1)], text)
 
 
 def words(name: str) -> str:

@@ -10,6 +10,7 @@ import numpy as np
 from spaceplane.report.numbers import MINUS, duration, measured, number
 from spaceplane.report.svg import Frame, Scale, drawing, padded
 
+POINT_COLOURS = 6  # colours of flight points in the style sheet
 LEAST_SLOW = 1e-7  # 1/s: an eigenvalue below this is zero to round-off and does not set the slow end of the axes
 
 
@@ -42,35 +43,67 @@ def eigenvalue_planes(modes: list[dict]) -> str:
     )
 
 
+def eigenvalues_together(points: list[dict]) -> str:
+    """The upper half of the complex plane with the eigenvalues of every flight point, one colour each."""
+    marks = [(k, p["name"], n, m) for k, p in enumerate(points) for n, m in enumerate(p.get("modes") or [], 1)]
+    if len({k for k, *_ in marks}) < 2:
+        return ""
+    modes = [m for *_, m in marks]
+    width, height, left, top = 1140.0, 330.0, 68.0, 24.0
+    linear = _linear_width(modes)
+    x_range, (_, highest) = _ranges(modes, linear)
+    frame = Frame(
+        left, top, width - left - 12, height - top - 44, Scale(*x_range, linear), Scale(-0.5 * linear, highest, linear)
+    )
+    out = [_half_planes(frame)]
+    for k, name, number_, mode in marks:
+        real, imaginary = mode["eigenvalue"]
+        title = escape(f"{name}\n{mode_title(mode, number_)}")
+        out.append(
+            f'<g class="mode-marker point-{k % POINT_COLOURS}" tabindex="0" data-tip="{title}"><title>{title}</title>'
+            f'<circle cx="{frame.x(real):.1f}" cy="{frame.y(abs(imaginary)):.1f}" r="6"/></g>'
+        )
+    return drawing(width, height, *out, title="eigenvalues of all flight points")
+
+
 def _linear_width(modes: list[dict]) -> float:
     sizes = [abs(part) for mode in modes for part in mode["eigenvalue"] if abs(part) > LEAST_SLOW]
     smallest = min(sizes, default=1e-3)
     return 10.0 ** math.floor(math.log10(smallest))
 
 
+def _ranges(modes: list[dict], linear_width: float | None) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Ranges of real and imaginary part that hold every eigenvalue and its conjugate."""
+    reals = [m["eigenvalue"][0] for m in modes]
+    largest = max(max(abs(m["eigenvalue"][1]) for m in modes), 0.25 * max(map(abs, reals)), 1e-6)
+    if linear_width is None:
+        return padded([*reals, 0.0], 0.12, 1e-6), padded([-largest, largest], 0.1)
+    reach, least = 3.0, 10 * linear_width
+    return (min(min(reals) * reach, -least), max(max(reals) * reach, least)), (-largest * reach, largest * reach)
+
+
+def _half_planes(frame: Frame) -> str:
+    """Axes with the growing half shaded."""
+    zero, right, bottom = frame.x(0.0), frame.left + frame.width, frame.top + frame.height
+    level, names = frame.y(0.0), frame.top - 8
+    return (
+        f'<rect class="unstable-half" x="{zero:.1f}" y="{frame.top}" width="{right - zero:.1f}" '
+        f'height="{frame.height}"/>'
+        + frame.axes("real part, 1/s", "imaginary part, rad/s", 6, 6)
+        + f'<line class="zero" x1="{zero:.1f}" x2="{zero:.1f}" y1="{frame.top}" y2="{bottom}"/>'
+        f'<line class="zero" x1="{frame.left}" x2="{right}" y1="{level:.1f}" y2="{level:.1f}"/>'
+        f'<text class="half-name" x="{right}" y="{names}" text-anchor="end">grows</text>'
+        f'<text class="half-name decays" x="{frame.left}" y="{names}">decays</text>'
+    )
+
+
 def _plane(modes: list[dict], linear_width: float | None, caption: str) -> str:
     width, height, left, top = 560.0, 390.0, 68.0, 24.0
-    reals = [m["eigenvalue"][0] for m in modes]
-    largest_imaginary = max(max(abs(m["eigenvalue"][1]) for m in modes), 0.25 * max(map(abs, reals)), 1e-6)
-    if linear_width is None:
-        x_range = padded([*reals, 0.0], 0.12, 1e-6)
-        y_range = padded([-largest_imaginary, largest_imaginary], 0.1)
-    else:
-        reach = 3.0
-        x_range = (min(min(reals) * reach, -10 * linear_width), max(max(reals) * reach, 10 * linear_width))
-        y_range = (-largest_imaginary * reach, largest_imaginary * reach)
+    x_range, y_range = _ranges(modes, linear_width)
     frame = Frame(
         left, top, width - left - 12, height - top - 44, Scale(*x_range, linear_width), Scale(*y_range, linear_width)
     )
-    zero, right, bottom = frame.x(0.0), frame.left + frame.width, frame.top + frame.height
-    out = [
-        f'<rect class="unstable-half" x="{zero:.1f}" y="{top}" width="{right - zero:.1f}" height="{frame.height}"/>',
-        frame.axes("real part, 1/s", "imaginary part, rad/s", 6, 6),
-        f'<line class="zero" x1="{zero:.1f}" x2="{zero:.1f}" y1="{top}" y2="{bottom}"/>',
-        f'<line class="zero" x1="{left}" x2="{right}" y1="{frame.y(0):.1f}" y2="{frame.y(0):.1f}"/>',
-        f'<text class="half-name" x="{right}" y="{top - 8}" text-anchor="end">grows</text>',
-        f'<text class="half-name decays" x="{left}" y="{top - 8}">decays</text>',
-    ]
+    out = [_half_planes(frame)]
     marks = [
         (frame.x(mode["eigenvalue"][0]), frame.y(part), index, mode)
         for index, mode in enumerate(modes, 1)

@@ -11,7 +11,7 @@ from spaceplane import __version__
 from spaceplane.report.flight_point import level_css, point
 from spaceplane.report.names import COEFFICIENTS, meaning, split_derivative, stability, symbol, words
 from spaceplane.report.numbers import Measured, duration, fixed, grouped, is_number, measured, number
-from spaceplane.report.plots import range_bar
+from spaceplane.report.plots import POINT_COLOURS, eigenvalues_together, range_bar
 
 __all__ = ["level_css", "point", "whole", "words"]
 
@@ -55,6 +55,8 @@ def whole(result: dict) -> dict:
         "flight_rows": _flight_rows(points),
         "coefficient_rows": _coefficient_rows(points),
         "derivative_groups": _derivative_groups(points),
+        "point_colours": POINT_COLOURS,
+        "together": Markup(eigenvalues_together(points)),
         "reference": _reference(vehicle.get("reference") or {}),
         "mesh_rows": _mesh_rows(result),
         "time_rows": _time_rows(result),
