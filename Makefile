@@ -42,7 +42,7 @@ validate: $(VENV)/.installed
 
 docs: $(VENV)/.installed-dev
 	@$(PY) docs/generate.py --check
-	@$(PY) -m mkdocs build --strict --quiet --site-dir site
+	@NO_MKDOCS_2_WARNING=1 $(PY) -m mkdocs build --strict --quiet --site-dir site
 	@echo "Documentation: site/index.html"
 
 bench: $(VENV)/.installed
