@@ -8,20 +8,16 @@ from __future__ import annotations
 
 import argparse
 import json
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from pathlib import Path
+
+from blocks import table  # beside this module
 
 DATA = Path(__file__).resolve().parent / "data"
 SENSITIVITY, COMPARISON = DATA / "sensitivity.json", DATA / "comparison.json"
 COLUMNS = ("parameter", "side", "parameter_value", "mach", "quantity", "value", "default", "noise", "flow")
 DERIVATIVES = ("CD_alpha", "CL_alpha", "Cm_alpha", "CY_beta", "Cl_beta", "Cn_beta", "CD_M", "CL_M", "Cm_M")
 MODES = ("greatest real part: real part", "lateral oscillation: real part", "lateral oscillation: damping ratio")
-
-
-def table(head: Sequence[str], rows: Sequence[Sequence[object]], align: str = "") -> str:
-    """A Markdown table; `align` has one of l and r per column."""
-    rule = ["---:" if kind == "r" else "---" for kind in align.ljust(len(head), "l")]
-    return "\n".join("| " + " | ".join(str(cell) for cell in row) + " |" for row in (head, rule, *rows))
 
 
 def sensitivity_extract(document: dict) -> dict:
@@ -113,7 +109,7 @@ def _change(row: dict | None, as_percent: bool) -> str:
     if row["flow"] == "failed":
         return "no flow"
     gap = row["value"] - row["default"]
-    text = f"{100 * gap / abs(row['default']):+.0f} %" if as_percent else f"{gap:+.3f}"
+    text = f"{100 * gap / abs(row['default']):+.0f} %" if as_percent else f"{gap:+.2g}"
     return text if row["noise"] is None or abs(gap) > row["noise"] else f"({text})"
 
 
