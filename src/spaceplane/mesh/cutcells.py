@@ -95,12 +95,7 @@ def cut_cells(points: np.ndarray, triangles: np.ndarray, shape: tuple, right_of:
     if folded > max(20, 0.002 * len(cells)):
         raise InputError(f"surface: folds over itself at {folded} places, a surface without overlaps is needed")
     axes, corner, beside, cell_faces = rg.list_faces(cells, cell_index)
-    segment_key = np.full(len(surface.edge_tag), -1, np.int32)
-    right = surface.edge_place[:, 1] >= (0 if right_of is None else right_of)
-    tagged = np.flatnonzero((surface.edge_tag >= 0) & right)
-    owner = cell_index[tuple(surface.edge_place[tagged].T)]
-    segment_key[tagged] = np.where(owner >= 0, 3 * owner + surface.edge_tag[tagged], -1)
-    segments = (*bucket(segment_key, 3 * len(cells)), surface.edge_ends)
+    segments = _segments(surface, cells, cell_index, 0 if right_of is None else right_of)
     region_face, region_area, region_moment, segment_region, slot_start, slot_region = rg.face_regions(
         axes, corner, cell_index, states, surface.points, segments, intervals
     )
@@ -108,19 +103,11 @@ def cut_cells(points: np.ndarray, triangles: np.ndarray, shape: tuple, right_of:
 
     polygon_cell = np.full(len(place), -1, np.int32)
     polygon_cell[kept] = cell_index[tuple(place[kept].T)]
-    parent = vol.connect_volumes(
-        surface.edge_tag,
-        surface.polygon_start,
-        surface.loop,
-        polygon_cell,
-        cell_faces,
-        slot_start,
-        slot_region,
-        segment_region,
-        len(region_face),
-    )
+    loops = (surface.polygon_start, surface.loop)
+    slots = (cell_faces, slot_start, slot_region)
+    parent = vol.connect_volumes(surface.edge_tag, *loops, polygon_cell, *slots, segment_region, len(region_face))
     area, size, center, first, second = vol.polygon_moments(
-        surface.points, surface.polygon_start, surface.loop, surface.edge_ends, polygon_cell, cells
+        surface.points, *loops, surface.edge_ends, polygon_cell, cells
     )
     sides, polygon_volume, cell, moment, first_moment, bounded = vol.measure_volumes(
         parent, axes, beside, region_face, region_area, polygon_cell, first, second
@@ -182,6 +169,15 @@ def _intervals(surface: Subdivision, cells: np.ndarray, cell_index: np.ndarray, 
         cells, states, surface.points, start, items, surface.crossing_vertex, surface.crossing_sign
     )
     return tuple(intervals), folded
+
+
+def _segments(surface: Subdivision, cells: np.ndarray, cell_index: np.ndarray, right_of: int):
+    """Cut edges listed by the face they lie in (3 * cell above + axis), and the edges' ends."""
+    key = np.full(len(surface.edge_tag), -1, np.int32)
+    tagged = np.flatnonzero((surface.edge_tag >= 0) & (surface.edge_place[:, 1] >= right_of))
+    owner = cell_index[tuple(surface.edge_place[tagged].T)]
+    key[tagged] = np.where(owner >= 0, 3 * owner + surface.edge_tag[tagged], -1)
+    return (*bucket(key, 3 * len(cells)), surface.edge_ends)
 
 
 def _join_islands(sides, polygon_volume, cell, moment, first_moment, bounded):

@@ -119,10 +119,10 @@ def _generate(surface: Surface, settings: MeshSettings, half: bool) -> Mesh:
     clock = time.perf_counter
     begin = clock()
     grid = place_grid(surface, settings, half)
-    expected = 3.0 * surface.area / grid.cell**2
+    expected = 3.0 * surface.area / grid.wall_cell**2
     if expected > settings.max_cells:
         raise InputError(
-            f"wall_cell: {grid.cell:.6g} m gives more than {expected:.3g} cells, at most {settings.max_cells} allowed"
+            f"wall_cell: {grid.wall_cell:.6g} m gives more than {expected:.3g} cells, at most {settings.max_cells} allowed"
         )
     cut, shift = _cut(surface, grid)
     cut_done = clock()
@@ -139,7 +139,9 @@ def _generate(surface: Surface, settings: MeshSettings, half: bool) -> Mesh:
     )
     expected = octree.count_leaves(refined) * (2 if half else 1)
     if expected > settings.max_cells:
-        raise InputError(f"wall_cell: {grid.cell:.6g} m gives {expected} cells, at most {settings.max_cells} allowed")
+        raise InputError(
+            f"wall_cell: {grid.wall_cell:.6g} m gives {expected} cells, at most {settings.max_cells} allowed"
+        )
     leaves = octree.build_leaves(refined, octree.Window(shift, cut.fluid))
     octree_done = clock()
 
