@@ -122,7 +122,8 @@ def _generate(surface: Surface, settings: MeshSettings, half: bool) -> Mesh:
     expected = 3.0 * surface.area / grid.wall_cell**2
     if expected > settings.max_cells:
         raise InputError(
-            f"wall_cell: {grid.wall_cell:.6g} m gives more than {expected:.3g} cells, at most {settings.max_cells} allowed"
+            f"wall_cell: {grid.wall_cell:.6g} m gives more than {expected:.3g} cells, "
+            f"at most {settings.max_cells} allowed"
         )
     cut, shift = _cut(surface, grid)
     cut_done = clock()
