@@ -65,6 +65,8 @@ def run_flow(
         InputError: a bad condition or body.
     """
     conditions = product(list(machs), list(alphas), list(betas))
+    if progress:
+        progress("mesh", 0, 1, "")
     mesh = generate(body, mesh_settings)
     solution = solve(mesh, conditions, flow_settings, progress)
     coefficients = integrate(solution, reference)

@@ -68,6 +68,11 @@ def plain(value: Any) -> Any:
     raise TypeError(f"no JSON form for {type(value).__name__}")
 
 
+def _degrees(angle: float) -> float:
+    """Degrees without the round-off of the turn from rad."""
+    return round(math.degrees(angle), 10)
+
+
 def vehicle(subject: Vehicle, deflections: ControlDeflections, surface: Surface) -> dict:
     """Shape, mass, reference lengths and geometry."""
     shape = subject.shape.as_dict()
@@ -80,7 +85,7 @@ def vehicle(subject: Vehicle, deflections: ControlDeflections, surface: Surface)
             p.name: {"value": shape[p.name], "unit": p.unit, "default": p.default, "lower": p.lower, "upper": p.upper}
             for p in PARAMETERS
         },
-        "deflections_deg": deflections.to_degrees(),
+        "deflections_deg": {name: round(value, 10) for name, value in deflections.to_degrees().items()},
         "mass": {"mass_kg": mass.mass, "Ixx_kgm2": mass.Ixx, "Iyy_kgm2": mass.Iyy, "Izz_kgm2": mass.Izz},
         "reference": {
             "area_m2": reference.area,
@@ -110,10 +115,10 @@ def flight_point(analysis: Analysis, index: int) -> dict:
         "name": point.name,
         "mach": point.mach,
         "altitude_m": point.altitude,
-        "alpha_deg": math.degrees(point.alpha),
-        "beta_deg": math.degrees(point.beta),
-        "gamma_deg": math.degrees(point.gamma),
-        "bank_deg": math.degrees(point.bank),
+        "alpha_deg": _degrees(point.alpha),
+        "beta_deg": _degrees(point.beta),
+        "gamma_deg": _degrees(point.gamma),
+        "bank_deg": _degrees(point.bank),
         "velocity_ms": point.velocity,
         "dynamic_pressure_Pa": point.dynamic_pressure,
         "pressure_Pa": ambient.pressure,
@@ -183,8 +188,8 @@ def convergence_row(one: ConvergenceRecord, plan: ConditionPlan, condition: int,
     return {
         "label": label,
         "mach": plan.conditions.mach[condition],
-        "alpha_deg": math.degrees(plan.conditions.alpha[condition]),
-        "beta_deg": math.degrees(plan.conditions.beta[condition]),
+        "alpha_deg": _degrees(plan.conditions.alpha[condition]),
+        "beta_deg": _degrees(plan.conditions.beta[condition]),
         "verdict": one.verdict,
         "residual_drop": one.residual_drop,
         "iterations": one.iterations,
