@@ -34,7 +34,8 @@ def evaluate(inputs: dict) -> dict:
         "schema": "spaceplane.result",
         "schema_version": 1,
         "vehicle": {"name": "fake", "shape": {name: {"value": value} for name, value in shape.items()}},
-        "settings": {},
+        "settings": {"mesh": {"wall_cell": 0.3}},
+        "mesh": {"cells": 12345},
         "flight_points": points,
     }
 

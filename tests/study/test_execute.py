@@ -14,7 +14,8 @@ import fake
 import pytest
 
 from spaceplane.errors import InputError
-from spaceplane.study.execute import Case, Progress, execute
+from spaceplane.study.execute import execute
+from spaceplane.study.records import Case, Progress
 
 HERE = Path(__file__).parent
 
@@ -22,7 +23,8 @@ _STUDY_PROCESS = """
 import sys
 sys.path.insert(0, {here!r})
 import fake
-from spaceplane.study.execute import Case, execute
+from spaceplane.study.execute import execute
+from spaceplane.study.records import Case
 if __name__ == "__main__":
     inputs = {{"log": sys.argv[2]}}
     cases = [Case(f"case {{i}}", inputs | {{"label": f"case {{i}}", "number": i}}) for i in range(12)]
@@ -82,7 +84,7 @@ def test_time_left_follows_the_mean_of_what_is_done(store, log):
 
 @pytest.mark.parametrize("workers", [1, 2])
 def test_long_cases_count_down(store, log, monkeypatch, workers):
-    monkeypatch.setattr("spaceplane.study.execute.REPORT_SECONDS", 0.02)
+    monkeypatch.setattr("spaceplane.study.ledger.REPORT_SECONDS", 0.02)
     seen: list[Progress] = []
     execute(cases_of(3, log, sleep_s=0.3), fake.evaluate, store, seen.append, workers, code="a")
     during = [p for p in seen if p.done == workers and p.running]

@@ -10,8 +10,9 @@ from spaceplane import __version__
 from spaceplane.errors import InputError
 from spaceplane.study import thesis
 from spaceplane.study.changes import level_number, worst_flow
-from spaceplane.study.execute import Case, Evaluate, Progress, execute
+from spaceplane.study.execute import execute
 from spaceplane.study.matching import match_modes
+from spaceplane.study.records import Case, Evaluate, Progress
 from spaceplane.study.shapes import case_inputs, evaluate, with_one_wall_cell
 from spaceplane.study.store import ResultStore
 

@@ -14,8 +14,9 @@ from spaceplane.errors import InputError
 from spaceplane.study import thesis
 from spaceplane.study.cases import SensitivityStudy, nearest
 from spaceplane.study.changes import Change, changes, mesh_noise
-from spaceplane.study.execute import Case, Evaluate, Failure, Progress, execute
+from spaceplane.study.execute import execute
 from spaceplane.study.keys import code_fingerprint
+from spaceplane.study.records import Case, Evaluate, Failure, Progress
 from spaceplane.study.shapes import ParameterRange, case_inputs, evaluate, parameter_ranges, shifted, with_one_wall_cell
 from spaceplane.study.store import ResultStore
 
