@@ -1,4 +1,4 @@
-"""Coarse levels by joining cells of a fine mesh: no second mesh generation, any polyhedral mesh."""
+"""Coarse levels by joining cells of a fine mesh: octree siblings where there are any, else cells in common cubes."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse.csgraph import connected_components
 
+from spaceplane.mesh import coarsen as octree
 from spaceplane.mesh.mesh import Mesh
 
 
@@ -43,7 +44,7 @@ def _join_boundary(cell: np.ndarray, area: np.ndarray, center: np.ndarray, sides
     return cell[first].astype(np.int32), _sum(inverse, area, count), middle
 
 
-def coarsen(mesh: Mesh, edge: float) -> tuple[Mesh, np.ndarray]:
+def join_in_cubes(mesh: Mesh, edge: float) -> tuple[Mesh, np.ndarray]:
     """Join all connected cells smaller than `edge` (m) that lie in one cube of that edge: (coarse mesh, parent [cell]).
 
     Cells on two sides of a thin body stay apart, for they share no face.
@@ -105,15 +106,17 @@ def sequence(mesh: Mesh, levels: int, fewest: int = 500) -> Sequence:
     """The mesh and up to `levels` coarser ones, none below `fewest` cells."""
     meshes, parents = [mesh], []
     edge = 2.0 * float(np.quantile(mesh.cell_size, 0.02))
-    while len(parents) < levels:
-        coarse, parent = coarsen(meshes[-1], edge)
-        edge *= 2.0
-        if coarse.cells < fewest:
+    while len(parents) < levels and meshes[-1].cells > fewest:
+        if mesh.cell_cube_center is not None:
+            coarse, parent = octree.coarsen(meshes[-1])
+        else:
+            coarse, parent = join_in_cubes(meshes[-1], edge)
+            edge *= 2.0
+        if coarse.cells < fewest or edge > 8.0 * float(mesh.cell_size.max()):
             break
-        if coarse.cells > 0.8 * meshes[-1].cells:
-            if edge > 4.0 * float(mesh.cell_size.max()):
-                break
-            continue
-        meshes.append(coarse)
-        parents.append(parent)
+        if coarse.cells < 0.8 * meshes[-1].cells:
+            meshes.append(coarse)
+            parents.append(parent)
+        elif mesh.cell_cube_center is not None:
+            break
     return Sequence(tuple(meshes), tuple(parents))

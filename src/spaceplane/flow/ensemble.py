@@ -13,8 +13,12 @@ from spaceplane.flow.reconstruction import gradients
 from spaceplane.flow.residual import fluxes, pressures_on_wall
 from spaceplane.flow.settings import FlowSettings
 from spaceplane.flow.solution import FlowConditions
+from spaceplane.flow.symmetry import symmetrise
 from spaceplane.flow.topology import Topology
 from spaceplane.mesh.mesh import Mesh
+
+# Ensembles are padded to full vectors of this many lanes.
+LANE_UNIT = 8
 
 
 def free_stream(conditions: FlowConditions) -> np.ndarray:
@@ -58,8 +62,7 @@ class Ensemble:
 
     def allocate(self, active: np.ndarray) -> None:
         """Make arrays for the conditions `active`, state at the free stream."""
-        unit = self.settings.smallest_lanes
-        padded = unit * -(-len(active) // unit)
+        padded = LANE_UNIT * -(-len(active) // LANE_UNIT)
         self.lanes = np.concatenate([active, np.full(padded - len(active), active[-1], dtype=active.dtype)])
         self.count = len(active)
         cells, lanes, dtype = self.mesh.cells, padded, self.dtype
@@ -133,6 +136,9 @@ class Ensemble:
             implicit.sweep(
                 self.topology, self.state, self.sensor, self.residual, self.inverse, self.change, self.gamma, forward
             )  # fmt: skip
+        share = np.where(self.conditions.beta[self.lanes] == 0.0, 0.5, 0.0).astype(self.dtype)
+        if len(self.topology.mirror) and share.any():
+            symmetrise(self.topology.mirror, self.change, share)
 
     def apply(self, largest: float, calm: np.ndarray) -> np.ndarray:
         """Add the accelerated change to the state; [lane] share of cells that were scaled back.

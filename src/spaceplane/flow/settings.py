@@ -37,7 +37,6 @@ class FlowSettings:
         least_drop: decades below which nothing is called converged.
         force_tolerance: half peak-to-peak of the force over the window, on the force's size, to stop after `least_drop`.
         window: iterations of the force window.
-        smallest_lanes: conditions are padded to a multiple of this.
     """
 
     precision: str = "single"
@@ -57,7 +56,6 @@ class FlowSettings:
     least_drop: float = 1.5
     force_tolerance: float = 1e-3
     window: int = 10
-    smallest_lanes: int = 8
 
     def __post_init__(self) -> None:
         choose("precision", self.precision, PRECISIONS)
@@ -79,7 +77,6 @@ class FlowSettings:
             ("coarse_iterations", 1, 10**6),
             ("coarse_levels", 0, 10),
             ("window", 2, 1000),
-            ("smallest_lanes", 1, 32),
         ):
             value = getattr(self, name)
             if not (isinstance(value, int | float) and math.isfinite(value) and low <= value <= high):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from spaceplane.flow.coarsen import Sequence, sequence
 from spaceplane.flow.compiled import WIDTH, is_compiled, mark_compiled
 from spaceplane.flow.ensemble import Ensemble, free_stream
 from spaceplane.flow.march import Caution, History, converged, march
+from spaceplane.flow.prolong import prolong
 from spaceplane.flow.settings import FlowSettings, check
 from spaceplane.flow.solution import ConvergenceRecord, FlowConditions, Solution
 from spaceplane.flow.topology import prepare
@@ -103,43 +105,53 @@ class _Job:
     def run(self, which: np.ndarray, caution: Caution, seconds: dict[str, float]) -> None:
         """March the conditions `which` through all levels, coarse to fine."""
         settings, start = self.settings, None
-        last = len(self.levels.meshes) - 1
-        for level in range(last, -1, -1):
+        c = self.conditions
+        subset = FlowConditions(c.mach[which], c.alpha[which], c.beta[which], c.gamma)
+        for level, order in stages(len(self.levels.meshes), settings.order):
             began = time.perf_counter()
             mesh, topology = self.levels.meshes[level], self.topologies[level]
-            order = settings.order if level == 0 else 1
-            subset = FlowConditions(
-                self.conditions.mach[which],
-                self.conditions.alpha[which],
-                self.conditions.beta[which],
-                self.conditions.gamma,
-            )
             ensemble = Ensemble(mesh, topology, subset, settings, order)
             if start is not None:
-                ensemble.state[:, :, : len(which)] = start[topology.order]
+                ensemble.state[:, :, : len(which)] = start
                 ensemble.state[:, :, len(which) :] = ensemble.state[:, :, len(which) - 1 : len(which)]
-            phase = "fine" if level == 0 else f"coarse {level}"
-            limit = settings.iterations if level == 0 else settings.coarse_iterations
-            result = np.empty((mesh.cells, 5, len(which)), settings.dtype)
+            phase = f"coarse level {level}, order {order}" if level else "fine"
+            limit = settings.coarse_iterations if level else settings.iterations
+            refine = level > 0 and order == settings.order
+            parent, offset = self._way_down(level) if refine else (np.arange(mesh.cells, dtype=np.int32), None)
+            offset = np.zeros((len(parent), 3), settings.dtype) if offset is None else offset
+            result = np.empty((len(parent), 5, len(which)), settings.dtype)
 
-            def finish(lane_condition, ensemble, lane, history, level=level, result=result, topology=topology):
-                result[topology.order, :, lane_condition] = ensemble.state[:, :, lane]
+            def finish(column, ensemble, lane, history, level=level, result=result, parent=parent, offset=offset):
                 if level == 0:
-                    self._keep(which[lane_condition], ensemble, lane, history, topology)
+                    self._keep(which[column], ensemble, lane, history)
                 elif history.failure:
                     # A coarse start that broke is replaced by the free stream; the next level may still succeed.
-                    result[:, :, lane_condition] = free_stream(ensemble.conditions)[:, lane_condition]
+                    result[:, :, column] = free_stream(ensemble.conditions)[:, column]
+                else:
+                    prolong(parent, offset, ensemble.state, ensemble.slopes(), ensemble.order, lane, result, column)
 
             def tick(iteration, active, worst, phase=phase, limit=limit):
                 self.say(phase, iteration, limit, f"{active} active, {worst:.1f} decades")
 
-            stop = (lambda h: converged(h, settings)) if level == 0 else (lambda h: h.drop() >= 1.5)
+            if level == 0:
+                stop = partial(converged, settings=settings)
+            else:
+                stop = partial(fallen, decades=1.5 if order == 1 else 2.0)
             march(ensemble, limit, caution, stop, finish, tick)
             seconds[phase] = seconds.get(phase, 0.0) + time.perf_counter() - began
-            if level:
-                start = result[self.levels.parents[level - 1]]
+            start = result
 
-    def _keep(self, condition, ensemble, lane, history, topology):
+    def _way_down(self, level: int) -> tuple[np.ndarray, np.ndarray]:
+        """For `prolong` from `level` to the next finer one: (parent, offset), rows in the finer level's kernel order."""
+        coarse, fine = self.levels.meshes[level], self.levels.meshes[level - 1]
+        place = np.empty(coarse.cells, dtype=np.int32)
+        place[self.topologies[level].order] = np.arange(coarse.cells, dtype=np.int32)
+        order = self.topologies[level - 1].order
+        parent = self.levels.parents[level - 1][order]
+        offset = fine.cell_center[order] - coarse.cell_center[parent]
+        return place[parent], offset.astype(self.settings.dtype)
+
+    def _keep(self, condition, ensemble, lane, history):
         """Store a fine-mesh result, unless an earlier attempt was better."""
         earlier = self.histories.get(int(condition))
         if earlier is not None and history.failure and not earlier.failure:
@@ -149,8 +161,20 @@ class _Job:
             self.state[:, :, condition] = np.nan
             self.wall_pressure[:, condition] = np.nan
             return
-        self.state[topology.order, :, condition] = ensemble.state[:, :, lane]
+        self.state[ensemble.topology.order, :, condition] = ensemble.state[:, :, lane]
         self.wall_pressure[:, condition] = ensemble.wall_pressure()[:, lane]
+
+
+def stages(levels: int, order: int) -> list[tuple[int, int]]:
+    """(level, order) to march through: first order on the coarsest level, then the asked order on all, coarse to fine."""
+    last = levels - 1
+    begin = [(last, 1)] if order == 2 else []
+    return begin + [(level, order) for level in range(last, -1, -1)]
+
+
+def fallen(history: History, decades: float) -> bool:
+    """Whether the residual of a coarse level has fallen far enough to go on to the next."""
+    return history.drop() >= decades
 
 
 def judge(history: History, settings: FlowSettings) -> ConvergenceRecord:

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy import sparse
 
+from spaceplane.flow.symmetry import mirror_cells
 from spaceplane.mesh.mesh import Mesh
 
 CELLS_PER_CHUNK = 16384
@@ -23,6 +24,7 @@ class Topology(NamedTuple):
     chunks stands in both lists and each chunk adds its own side, so that threads never write to the same cell.
     `boundary` rows are walls first (`walls` of them), then far field; `edge_start` lists them by cell.
     Blocks of cells are coloured so that blocks of one colour do not touch: `color_start`, `color_blocks`.
+    `mirror` is the mirror image of each cell in y = 0; empty when the mesh does not mirror itself.
     """
 
     order: np.ndarray
@@ -53,6 +55,7 @@ class Topology(NamedTuple):
     block_cells: np.ndarray
     color_start: np.ndarray
     color_blocks: np.ndarray
+    mirror: np.ndarray
 
 
 def morton_order(points: np.ndarray, spacing: float) -> np.ndarray:
@@ -220,4 +223,5 @@ def prepare(mesh: Mesh, dtype: type) -> Topology:
         block_cells=index(block_cells),
         color_start=index(color_start),
         color_blocks=index(blocks),
+        mirror=index(mirror_cells(mesh.cell_center[order], mesh.cell_volume[order])),
     )

@@ -1,0 +1,89 @@
+"""The analytic Jacobian pieces against finite differences."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from spaceplane.flow import implicit, jacobian
+from spaceplane.flow.fluxes import blend
+
+GAMMA = 1.4
+STATE = np.array([1.3, 0.4, -0.7, 0.2, 0.9])
+NORMAL = np.array([0.6, -0.48, 0.64])
+
+
+def conserved(w):
+    return np.array([w[0], *(w[0] * w[1:4]), w[4] / (GAMMA - 1) + 0.5 * w[0] * w[1:4] @ w[1:4]])
+
+
+def physical(w, n):
+    un = w[1:4] @ n
+    return np.array([w[0] * un, *(w[0] * un * w[1:4] + w[4] * n), un * (conserved(w)[4] + w[4])])
+
+
+def columns(function):
+    """Matrix of a function linear in primitive increments."""
+    return np.stack([np.array(function(*e)) for e in np.eye(5)], axis=1)
+
+
+def differences(function, w, step=1e-6):
+    return np.stack([(function(w + step * e) - function(w - step * e)) / (2 * step) for e in np.eye(5)], axis=1)
+
+
+def test_flux_increment_is_the_derivative_of_the_flux():
+    analytic = columns(lambda *d: jacobian.flux_increment.py_func(*STATE, *d, *NORMAL, GAMMA))
+    np.testing.assert_allclose(analytic, differences(lambda w: physical(w, NORMAL), STATE), atol=1e-8)
+
+
+def test_dissipation_is_the_absolute_value_of_the_jacobian():
+    r, u, v, w, p = STATE
+    a = np.sqrt(GAMMA * p / r)
+    un = STATE[1:4] @ NORMAL
+    mass = differences(conserved, STATE)
+    flux = columns(lambda *d: jacobian.flux_increment.py_func(*STATE, *d, *NORMAL, GAMMA)) @ np.linalg.inv(mass)
+    values, vectors = np.linalg.eig(flux)
+    absolute = (vectors * np.abs(values)) @ np.linalg.inv(vectors)
+    d = (abs(un), abs(un + a), abs(un - a))
+    analytic = columns(lambda *x: jacobian.dissipation_increment.py_func(r, u, v, w, a, *d, *x, *NORMAL, GAMMA))
+    np.testing.assert_allclose(analytic, np.real(absolute) @ mass, atol=1e-8)
+
+
+@pytest.mark.parametrize("theta", [0.0, 1.0])
+def test_linearised_first_order_flux_matches_the_flux(theta):
+    """For a weak jump the flux is the mean of both sides less half the dissipation of the jump."""
+    jump = 1e-5 * np.array([0.3, -0.8, 0.5, 0.9, -0.4])
+    left, right = STATE - jump / 2, STATE + jump / 2
+    flux = np.array(blend.py_func(*left, *right, *NORMAL, GAMMA, 0.0, theta))
+    a = np.sqrt(GAMMA * STATE[4] / STATE[0])
+    un = STATE[1:4] @ NORMAL
+    d = jacobian.wave_dissipation.py_func(un, a, theta)
+    spread = jacobian.dissipation_increment.py_func(*STATE[:4], a, *d, *jump, *NORMAL, GAMMA)
+    predicted = 0.5 * (physical(left, NORMAL) + physical(right, NORMAL)) - 0.5 * np.array(spread)
+    np.testing.assert_allclose(flux, predicted, atol=2e-9)
+
+
+def test_blocks_hold_the_same_matrices_as_the_products():
+    r, u, v, w, p = STATE
+    a, un = np.sqrt(GAMMA * p / r), STATE[1:4] @ NORMAL
+    d = jacobian.wave_dissipation.py_func(un, a, 0.3)
+    block = np.zeros((25, 1))
+    implicit.add_dissipation.py_func(block, 0, 1.7, r, u, v, w, a, un, *d, *NORMAL, GAMMA)
+    product = columns(lambda *x: jacobian.dissipation_increment.py_func(r, u, v, w, a, *d, *x, *NORMAL, GAMMA))
+    np.testing.assert_allclose(block.reshape(5, 5), 1.7 * product, atol=1e-12)
+    block[:] = 0.0
+    implicit.add_flux.py_func(block, 0, -0.6, r, u, v, w, p, *NORMAL, GAMMA)
+    product = columns(lambda *x: jacobian.flux_increment.py_func(*STATE, *x, *NORMAL, GAMMA))
+    np.testing.assert_allclose(block.reshape(5, 5), -0.6 * product, atol=1e-12)
+    block[:] = 0.0
+    implicit.add_mass.py_func(block, 0, 2.0, r, u, v, w, GAMMA)
+    np.testing.assert_allclose(block.reshape(5, 5), 2.0 * differences(conserved, STATE), atol=1e-8)
+
+
+def test_inverse_blocks():
+    rng = np.random.default_rng(3)
+    block = rng.normal(size=(25, 4)) + 4.0 * np.eye(5).reshape(25, 1)
+    inverse = block.copy()
+    implicit.invert.py_func(inverse, 4)
+    product = np.einsum("ikn,kjn->ijn", block.reshape(5, 5, 4), inverse.reshape(5, 5, 4))
+    np.testing.assert_allclose(product, np.repeat(np.eye(5)[:, :, None], 4, axis=2), atol=1e-12)
