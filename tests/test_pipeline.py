@@ -10,12 +10,14 @@ import pyvista
 
 from spaceplane import pipeline
 from spaceplane.aero import bodies
+from spaceplane.aero.conditions import DerivativeSteps
 from spaceplane.aero.database import AeroDatabase
 from spaceplane.errors import InputError
 from spaceplane.flow.freestream import direction
 from spaceplane.flow.solution import ConvergenceRecord, Solution
 from spaceplane.mesh.settings import MeshSettings
 from spaceplane.pipeline import AnalyseSettings, analyse
+from spaceplane.report import record
 from spaceplane.vehicle.controls import CONTROLS, ControlDeflections
 from spaceplane.vehicle.presets import horus_2b
 
@@ -191,6 +193,32 @@ def test_an_unwritable_folder_is_found_before_anything_is_computed(monkeypatch, 
     (tmp_path / "file").write_text("here")
     with pytest.raises(InputError, match="file"):
         pipeline.run(horus_2b(), SETTINGS, tmp_path / "file" / "out")
+
+
+@pytest.mark.parametrize(
+    ("change", "moved"),
+    [
+        ({"alpha_deg": (12.0,)}, lambda r: r["coefficients"]["CL"]),
+        ({"altitude_m": (30_000.0,)}, lambda r: r["dynamic_pressure_Pa"]),
+        ({"gamma_deg": (-15.0,)}, lambda r: r["A"]),
+        ({"bank_deg": (0.0,)}, lambda r: r["equilibrium"]),
+        ({"form": "thesis"}, lambda r: r["A"]),
+        ({"vehicle_class": "IV"}, lambda r: [v["vehicle_class"] for v in r["verdicts"]]),
+        ({"category": "C"}, lambda r: [v["category"] for v in r["verdicts"]]),
+        ({"steps": DerivativeSteps(alpha=0.05)}, lambda r: r["derivatives"]["CL_alpha"]["value"]),
+        ({"steps": DerivativeSteps(beta=0.1)}, lambda r: r["derivatives"]["CY_beta"]["value"]),
+        ({"steps": DerivativeSteps(mach_fraction=0.1)}, lambda r: r["derivatives"]["CL_M"]["step"]),
+    ],
+)
+def test_every_setting_moves_what_it_should(monkeypatch, analysis, change, moved):
+    monkeypatch.setattr(bodies, "solve", newtonian())
+    monkeypatch.setattr(bodies, "build", lambda *_: analysis.body.surface)
+    monkeypatch.setattr(bodies, "generate", lambda *_: analysis.body.solution.mesh)
+    settings = AnalyseSettings(mach=(2.5,), controls=False, mesh=SETTINGS.mesh)
+    before, after = (
+        record.result(analyse(horus_2b(), s))["flight_points"][0] for s in (settings, replace(settings, **change))
+    )
+    assert moved(before) != moved(after)
 
 
 def test_settings_survive_a_round_trip_through_plain_values():
