@@ -44,6 +44,7 @@ class Ledger:
         self.report()
 
     def report(self) -> None:
+        """Tell `progress` how far the study is."""
         if self.progress is None:
             return
         labels = tuple(self.cases[key].label for key in tuple(self.running))
@@ -65,10 +66,12 @@ class Ledger:
         return sum(min((time.monotonic() - since) / max(mean, 1e-9), 0.95) for since in tuple(self.running.values()))
 
     def start(self, key: str) -> None:
+        """The case is being computed."""
         self.running[key] = time.monotonic()
         self.report()
 
     def finish(self, key: str, seconds: float) -> None:
+        """The case is stored; it took `seconds`."""
         self.running.pop(key, None)
         self.durations.append(seconds)
         self.computed += 1
@@ -82,6 +85,7 @@ class Ledger:
         self.report()
 
     def fail(self, key: str, reason: str, trace: str = "") -> None:
+        """The case will have no result."""
         self.running.pop(key, None)
         self.failures[key] = Failure(self.cases[key].label, reason, trace)
         self.report()

@@ -57,6 +57,7 @@ class Crew:
         self._workers[here] = (process, None)
 
     def idle(self) -> list[Connection]:
+        """Return the connections of workers without a case."""
         return [connection for connection, (_, key) in self._workers.items() if key is None]
 
     def send(self, connection: Connection, key: str, case: Case) -> bool:
