@@ -24,8 +24,8 @@ from spaceplane.vehicle.presets import horus_2b
 SETTINGS = AnalyseSettings(mach=(1.5, 2.5), mesh=MeshSettings(wall_cell=0.6, far_field=1.0))
 
 
-def newtonian(failing=()):
-    """A stand-in for `solve`: Cp = 2 cos^2 on wall that the wind sees, 0 elsewhere; `failing` conditions fail."""
+def newtonian(failing=(), oscillating=()):
+    """A stand-in for `solve`: Cp = 2 cos^2 on wall that the wind sees, 0 elsewhere; some conditions do not converge."""
 
     def solve(mesh, conditions, settings=None, progress=None):
         wind = direction(conditions.alpha, conditions.beta)
@@ -34,9 +34,9 @@ def newtonian(failing=()):
         pressure = 1.0 / conditions.gamma + cp * 0.5 * conditions.mach**2
         records = []
         for i in range(len(conditions)):
-            verdict = "failed" if i in failing else "converged"
+            verdict = "failed" if i in failing else "oscillating" if i in oscillating else "converged"
             history = np.zeros((12, 3))
-            reason = "made to fail" if i in failing else ""
+            reason = "" if verdict == "converged" else "made to fail" if i in failing else "made to swing"
             records.append(ConvergenceRecord(verdict, 3.0, 12, np.zeros(12), history, history[0], history[0], reason))
         state = np.ones((mesh.cells, 5, len(conditions)), np.float32)
         statistics = {"seconds": 0.1, "precision": "single"}
@@ -182,6 +182,14 @@ def test_a_failed_condition_poisons_what_rests_on_it_and_says_so(monkeypatch, tm
     assert "Mach 1.5, condition alpha+: failed: made to fail" in text
     assert "CL_alpha" in text
     assert "Mach 2.5: the flow of the base condition failed" in text
+
+
+def test_modes_on_an_oscillating_condition_are_shown_with_a_warning(monkeypatch):
+    monkeypatch.setattr(bodies, "solve", newtonian(oscillating={3}))  # mach+
+    found = analyse(horus_2b(), AnalyseSettings(mach=(2.5,), controls=False, mesh=SETTINGS.mesh))
+    assert found.points[0].modes
+    assert "Mach 2.5, condition mach+: oscillating: made to swing" in found.warnings
+    assert any("rest on CD_M, CL_M, Cm_M" in line for line in found.warnings)
 
 
 def test_an_unwritable_folder_is_found_before_anything_is_computed(monkeypatch, tmp_path):

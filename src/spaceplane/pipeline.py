@@ -13,9 +13,10 @@ import xarray as xr
 
 from spaceplane import __version__
 from spaceplane.aero.bodies import ControlRun, SolvedBody, control_runs, is_symmetric, slopes_of, solve_vehicle
-from spaceplane.aero.conditions import ConditionPlan, DerivativeSteps, plan
+from spaceplane.aero.conditions import ConditionPlan, DerivativeSteps
+from spaceplane.aero.conditions import plan as plan_conditions
 from spaceplane.aero.database import AeroDatabase, SolvedCases, assemble
-from spaceplane.aero.derivatives import differentiate
+from spaceplane.aero.derivatives import CONVERGED, differentiate
 from spaceplane.aero.integrate import TOTAL, integrate
 from spaceplane.dynamics.derivatives import COEFFICIENTS, STATIC, Derivatives
 from spaceplane.dynamics.flightpoint import AngularRates, FlightPoint, equilibrium_rates, taem_point
@@ -274,16 +275,16 @@ def analyse(vehicle: Vehicle, settings: AnalyseSettings | None = None, progress:
     settings = settings or AnalyseSettings()
     say = progress or (lambda phase, done, total, text: None)
     points = settings.flight_points()
-    plan_ = plan(list(points), settings.steps, is_symmetric(settings.deflections))
-    body = solve_vehicle(vehicle, settings.deflections, plan_.conditions, settings.mesh, settings.flow, say, "base")
+    plan = plan_conditions(list(points), settings.steps, is_symmetric(settings.deflections))
+    body = solve_vehicle(vehicle, settings.deflections, plan.conditions, settings.mesh, settings.flow, say, "base")
     say("coefficients", 0, 1, "")
     coefficients = integrate(body.solution, vehicle.reference)
-    base = coefficients.isel(condition=[p.base for p in plan_.points])
-    derivatives = differentiate(coefficients, plan_)
+    base = coefficients.isel(condition=[p.base for p in plan.points])
+    derivatives = differentiate(coefficients, plan)
     runs: tuple[ControlRun, ...] = ()
     if settings.controls:
         wall_cell = float(body.solution.mesh.record["wall_cell_m"])
-        runs = _control_runs(vehicle, settings, plan_, wall_cell, say)
+        runs = _control_runs(vehicle, settings, plan, wall_cell, say)
         slopes = slopes_of(base, runs, is_symmetric(settings.deflections))
         derivatives = xr.merge([derivatives, slopes], join="exact")
     say("flight dynamics", 0, 1, "")
@@ -293,24 +294,24 @@ def analyse(vehicle: Vehicle, settings: AnalyseSettings | None = None, progress:
         vehicle=vehicle,
         settings=settings,
         body=body,
-        plan=plan_,
+        plan=plan,
         coefficients=coefficients,
         control_runs=runs,
         derivatives=derivatives,
         points=found,
         database=assemble(
-            _cases(settings, plan_, coefficients, runs), derivatives, [p.name for p in points], __version__
+            _cases(settings, plan, coefficients, runs), derivatives, [p.name for p in points], __version__
         ),
-        warnings=_warnings(vehicle, body, plan_, runs, found),
+        warnings=_warnings(vehicle, body, plan, runs, found, derivatives),
     )
 
 
 def _control_runs(
-    vehicle: Vehicle, settings: AnalyseSettings, plan_: ConditionPlan, wall_cell: float, say: Progress
+    vehicle: Vehicle, settings: AnalyseSettings, plan: ConditionPlan, wall_cell: float, say: Progress
 ) -> tuple[ControlRun, ...]:
     """The base conditions on bodies with one surface moved, on the wall cell, m, of the base mesh."""
-    rows = np.array([p.base for p in plan_.points])
-    c = plan_.conditions
+    rows = np.array([p.base for p in plan.points])
+    c = plan.conditions
     return control_runs(
         vehicle,
         settings.deflections,
@@ -360,12 +361,12 @@ def _fly(
 
 
 def _cases(
-    settings: AnalyseSettings, plan_: ConditionPlan, coefficients: xr.Dataset, runs: tuple[ControlRun, ...]
+    settings: AnalyseSettings, plan: ConditionPlan, coefficients: xr.Dataset, runs: tuple[ControlRun, ...]
 ) -> list[SolvedCases]:
     def of(deflections: ControlDeflections) -> dict[str, float]:
         return {name: getattr(deflections, name) for name in CONTROLS}
 
-    cases = [SolvedCases(coefficients, plan_.labels, plan_.point, of(settings.deflections))]
+    cases = [SolvedCases(coefficients, plan.labels, plan.point, of(settings.deflections))]
     for run in runs:
         count = len(run.records)
         cases.append(SolvedCases(run.coefficients, [run.label] * count, range(count), of(run.deflections)))
@@ -375,21 +376,26 @@ def _cases(
 def _warnings(
     vehicle: Vehicle,
     body: SolvedBody,
-    plan_: ConditionPlan,
+    plan: ConditionPlan,
     runs: tuple[ControlRun, ...],
     found: tuple[PointAnalysis, ...],
+    derivatives: xr.Dataset,
 ) -> tuple[str, ...]:
     lines = [
         f"{name} = {getattr(vehicle.shape, name):g} lies outside its limits" for name in vehicle.shape.outside_limits()
     ]
     lines += [str(line) for line in body.solution.mesh.record.get("warnings", ())]
-    judged = [(found[plan_.point[i]].point.name, plan_.labels[i], one) for i, one in enumerate(body.solution.records)]
+    judged = [(found[plan.point[i]].point.name, plan.labels[i], one) for i, one in enumerate(body.solution.records)]
     judged += [(at.point.name, run.label, one) for run in runs for at, one in zip(found, run.records, strict=True)]
     lines += [f"{name}, condition {label}: {one.verdict}: {one.reason}" for name, label, one in judged if not one.good]
-    for point in found:
-        lines += [f"{point.point.name}: {note}" for note in point.validity.notes]
+    for index, point in enumerate(found):
+        name = point.point.name
+        lines += [f"{name}: {note}" for note in point.validity.notes]
+        shaky = [n for n in STATIC if str(derivatives[f"{n}_status"].values[index]) != CONVERGED]
         if point.reason:
-            lines.append(f"{point.point.name}: {point.reason}")
+            lines.append(f"{name}: {point.reason}")
+        elif shaky:
+            lines.append(f"{name}: modes and levels rest on {', '.join(shaky)}, of conditions that did not converge")
     return tuple(lines)
 
 
