@@ -226,6 +226,11 @@ def test_file_as_output_folder(capfd, tmp_path):
     assert (tmp_path / "o").read_text() == "kept"
 
 
+@pytest.mark.parametrize(("command", "option"), [("analyse", "--out"), ("geometry", "--out"), ("analyse", "--json")])
+def test_empty_names_of_places(capfd, command, option):
+    refused(capfd, command, "horus-2b", option, "", naming=option)
+
+
 @pytest.mark.parametrize("name", ["b.obj", "b", "b.stl.txt"])
 def test_unknown_geometry_format(capfd, tmp_path, name):
     refused(capfd, "geometry", "horus-2b", "--out", tmp_path / name, naming=".stl")

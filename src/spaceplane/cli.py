@@ -10,7 +10,7 @@ import typer
 
 from spaceplane import __version__
 from spaceplane.commands import analyse, compare, export, flow, geometry, modes, report, study, validate
-from spaceplane.commands.arguments import spread_assignments
+from spaceplane.commands.arguments import require_places, spread_assignments
 from spaceplane.errors import InputError
 
 GOOD, NOT_GOOD, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
@@ -56,6 +56,7 @@ def run(arguments: Sequence[str] | None = None) -> int:
     """Run one command and return its exit code: 0 good, 1 a result that is not good, 2 bad input, 130 Ctrl-C."""
     arguments = sys.argv[1:] if arguments is None else list(arguments)
     try:
+        require_places(arguments)
         code = app(args=spread_assignments(arguments), prog_name="spaceplane", standalone_mode=False)
     except InputError as error:
         return _complain(str(error), BAD_INPUT)

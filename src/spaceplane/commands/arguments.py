@@ -7,11 +7,13 @@ import os
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from itertools import pairwise
 from pathlib import Path
 
 from spaceplane.errors import InputError
 
 ASSIGNING = ("--set", "--deflect")
+PLACES = ("--out", "--json", "--vtu", "--vtp", "--store")
 
 
 def spread_assignments(arguments: Sequence[str]) -> list[str]:
@@ -30,6 +32,17 @@ def spread_assignments(arguments: Sequence[str]) -> list[str]:
             option = ""
         spread.append(argument)
     return spread
+
+
+def require_places(arguments: Sequence[str]) -> None:
+    """Refuse an empty name of a file or folder, which would mean the current folder.
+
+    Raises:
+        InputError: naming the option.
+    """
+    for option, value in pairwise(arguments):
+        if option in PLACES and not value.strip():
+            raise InputError(f"{option}: empty, a name is needed")
 
 
 def number(option: str, text: str, unit: str = "") -> float:
