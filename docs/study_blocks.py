@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import math
 from collections.abc import Callable
 from pathlib import Path
 
@@ -17,7 +18,7 @@ DATA = Path(__file__).resolve().parent / "data"
 SENSITIVITY, COMPARISON = DATA / "sensitivity.json", DATA / "comparison.json"
 COLUMNS = ("parameter", "side", "parameter_value", "mach", "quantity", "value", "default", "noise", "flow")
 DERIVATIVES = ("CD_alpha", "CL_alpha", "Cm_alpha", "CY_beta", "Cl_beta", "Cn_beta", "CD_M", "CL_M", "Cm_M")
-MODES = ("greatest real part: real part", "lateral oscillation: real part", "lateral oscillation: damping ratio")
+AFT_CENTRE = 1.8  # m: from the default centre to the one that the published C_m asks for (docs/moment-reference.md)
 
 
 def sensitivity_extract(document: dict) -> dict:
@@ -25,7 +26,7 @@ def sensitivity_extract(document: dict) -> dict:
     rows = [
         [row[name] for name in COLUMNS]
         for row in document["rows"]
-        if row["kind"] in ("derivative", "level") or row["quantity"].startswith(("greatest", "lateral"))
+        if row["kind"] in ("derivative", "level") or row["quantity"].startswith(("greatest", "lateral", "CL", "CD"))
     ]
     settings = document["default"]["settings"]
     default = [
@@ -163,6 +164,80 @@ def default_noise() -> str:
     return table(head, lines, "l" + "rr" * len(document["study"]["mach"]))
 
 
+def about_aft_centre(row: dict[str, float], alpha: float, aft: float) -> dict[str, float]:
+    """Return `Cm_alpha` and `Cn_beta` about a centre moved aft.
+
+    Args:
+        row: CL, CD and derivatives of one shape at one flight point, per radian.
+        alpha: angle of attack, rad.
+        aft: distance moved, m.
+    """
+    normal = row["CL_alpha"] * math.cos(alpha) - row["CL"] * math.sin(alpha)
+    normal += row["CD_alpha"] * math.sin(alpha) + row["CD"] * math.cos(alpha)
+    side = row["CY_beta"] - row["CD"]  # along body y: the drag turns with the wind
+    chord, span = 23.0, 13.0
+    return {"Cm_alpha": row["Cm_alpha"] + normal * aft / chord, "Cn_beta": row["Cn_beta"] + side * aft / span}
+
+
+def _moved(aft_of_default: float) -> list[dict]:
+    """Rows of `Cm_alpha` and `Cn_beta` about a centre that lies aft of 13.0 m on the default shape, m."""
+    from spaceplane.vehicle.presets import load
+
+    document = study()
+    alpha = {point["mach"]: math.radians(point["alpha_deg"]) for point in document["default"]}
+    shapes: dict[tuple, dict] = {}
+    for row in rows_of(document):
+        shapes.setdefault((row["parameter"], row["side"], row["parameter_value"], row["mach"]), {})[row["quantity"]] = (
+            row
+        )
+    default_centre = load("horus-2b").reference.moment_center[0]
+    rows = []
+    for (parameter, side, value, mach), found in shapes.items():
+        centre = load("horus-2b", {parameter: value}, allow_outside=True).reference.moment_center[0]
+        new = {name: row["value"] for name, row in found.items()}
+        old = {name: row["default"] for name, row in found.items()}
+        if None in (new["Cm_alpha"], new["Cn_beta"], old["Cm_alpha"], old["Cn_beta"]):
+            continue
+        after = about_aft_centre(new, alpha[mach], aft_of_default * centre / default_centre)
+        before = about_aft_centre(old, alpha[mach], aft_of_default)
+        for name in ("Cm_alpha", "Cn_beta"):
+            key = {"parameter": parameter, "side": side, "parameter_value": value, "mach": mach, "quantity": name}
+            rows.append(key | {"value": after[name], "default": before[name], "noise": found[name]["noise"]})
+    return rows
+
+
+def aft_centre() -> str:
+    """Moment derivatives about 13.0 and 14.8 m, and how far the signs of their changes agree with the thesis's."""
+    from spaceplane.study import thesis
+
+    lines = []
+    for name in ("Cm_alpha", "Cn_beta"):
+        for aft in (0.0, AFT_CENTRE):
+            rows = [row for row in _moved(aft) if row["quantity"] == name]
+            defaults = {row["mach"]: row["default"] for row in rows}
+            ours = [
+                thesis.Sensitivity(
+                    row["parameter"],
+                    row["side"],
+                    row["parameter_value"],
+                    row["mach"],
+                    name,
+                    row["value"],
+                    row["default"],
+                    max(thesis.resolution(row["value"], row["default"]), row["noise"] or 0.0),
+                )
+                for row in rows
+            ]
+            (count,) = thesis.agreement_table(thesis.agreement(ours), "derivative")
+            share = "-" if count["agreement_percent"] is None else f"{count['agreement_percent']:.0f} %"
+            told = f"{share} of {count['agree'] + count['disagree']}"
+            lines.append((f"`{name}`", f"{13.0 + aft:.1f} m", *(f"{value:+.3f}" for value in defaults.values()), told))
+        printed = thesis.derivatives("original")
+        lines.append((f"`{name}`", "thesis", *(f"{printed[mach][name]:+.3f}" for mach in defaults), ""))
+    machs = [f"Mach {mach:g}" for mach in study()["study"]["mach"]]
+    return table(("default shape", "centre", *machs, "same sign as the thesis"), lines, "ll" + "r" * (len(machs) + 1))
+
+
 def agreement_block(by: str) -> Callable[[], str]:
     """Signs of our changes against the thesis's, counted."""
 
@@ -187,7 +262,7 @@ def level_counts() -> str:
         for row in rows_of(document)
         if ": " in row["quantity"] and not row["quantity"].startswith(("greatest", "lateral o"))
     ]
-    rows = [row for row in rows if row["quantity"] not in DERIVATIVES]
+    rows = [row for row in rows if row["quantity"] not in (*DERIVATIVES, "CL", "CD")]
     for quantity in dict.fromkeys(row["quantity"] for row in rows):
         line = [quantity]
         for mach in document["study"]["mach"]:
@@ -264,6 +339,34 @@ def comparison_levels() -> str:
     return table(glance.columns, glance.rows)
 
 
+def entry_loads() -> str:
+    """What the lift of both shapes means for the entry: equilibrium glide density, dynamic pressure and heating."""
+    lines = []
+    for point in comparison()["flight_points"]:
+        if point["mach"] < 5:
+            continue
+        lift = next(row["values"] for row in point["coefficients"] if row["name"] == "CL")
+        ratio = lift[0] / lift[1]
+        lines.append(
+            (
+                f"{point['mach']:g}",
+                f"{point['alpha_deg'][0]:.3g}",
+                *(f"{value:.3f}" for value in lift),
+                f"{100 * (ratio - 1):+.0f} %",
+                f"{100 * (math.sqrt(ratio) - 1):+.0f} %",
+            )
+        )
+    head = (
+        "Mach",
+        "alpha, deg",
+        "C_L default",
+        "C_L optimised",
+        "density and dynamic pressure",
+        "stagnation heat flux",
+    )
+    return table(head, lines, "rrrrrr")
+
+
 def _number(value: float | None) -> str:
     return "-" if value is None else f"{value:.3g}"
 
@@ -296,6 +399,7 @@ BLOCKS: dict[str, Callable[[], str]] = {
     "study lateral real": mode_block("lateral oscillation: real part"),
     "study lateral damping": mode_block("lateral oscillation: damping ratio"),
     "study levels": level_counts,
+    "study aft centre": aft_centre,
     "study agreement derivative": agreement_block("derivative"),
     "study agreement parameter": agreement_block("parameter"),
     "study agreement mach": agreement_block("mach"),
@@ -303,6 +407,7 @@ BLOCKS: dict[str, Callable[[], str]] = {
     "comparison derivatives": comparison_derivatives,
     "comparison modes": comparison_modes,
     "comparison levels": comparison_levels,
+    "comparison entry loads": entry_loads,
 }
 
 
