@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from spaceplane.commands import options
-from spaceplane.commands.arguments import writable_file, writable_folder, write_json
+from spaceplane.commands.arguments import positive, writable_file, writable_folder, write_json
 from spaceplane.commands.progress import progress_bar
 from spaceplane.errors import InputError
 
@@ -21,6 +21,7 @@ def compare(
     out: Annotated[
         Path | None, typer.Option("--out", metavar="DIR", help="Write the comparison as JSON, Markdown and HTML here.")
     ] = None,
+    cells: options.Cells = None,
     workers: Annotated[int, typer.Option("--workers", metavar="N", help="Processes, when shapes are computed.")] = 1,
     json_file: options.JsonFile = None,
 ) -> int:
@@ -31,13 +32,15 @@ def compare(
     """
     if (first is None) != (second is None):
         raise InputError("compare: two result.json files are needed, or none for default against optimised shape")
+    if first is not None and cells is not None:
+        raise InputError("--cells: says how shapes are computed; two result.json files are compared as they are")
     if workers < 1:
         raise InputError(f"--workers: {workers}, must be at least 1")
     writable_file(json_file, "--json")
     folder = Path("out/compare") if first is None and out is None else out
     if folder is not None:
         writable_folder(folder)
-    comparison = _computed(folder, workers) if first is None else _read(first, second)
+    comparison = _computed(folder, cells, workers) if first is None else _read(first, second)
     from spaceplane.study import compare_page
 
     write_json(comparison, json_file)
@@ -46,7 +49,7 @@ def compare(
         typer.echo(compare_page.as_text(comparison))
         for path in files.values():
             typer.echo(path)
-    return 0
+    return 1 if any("failed" in point["flow"] for point in comparison["flight_points"]) else 0
 
 
 def _read(first: Path, second: Path) -> dict:
@@ -56,7 +59,8 @@ def _read(first: Path, second: Path) -> dict:
     return side_by_side(read_result(first), read_result(second))
 
 
-def _computed(folder: Path, workers: int) -> dict:
+def _computed(folder: Path, cells: str | None, workers: int) -> dict:
+    settings = {} if cells is None else {"mesh": {"target_cells": round(positive("--cells", cells, "cells"))}}
     from spaceplane.study.compare import default_against_optimised
 
     with progress_bar() as tell:
@@ -64,4 +68,4 @@ def _computed(folder: Path, workers: int) -> dict:
         def on_change(p) -> None:
             tell(f"{p.done} of {p.total} shapes: {', '.join(p.running)}", p.fraction)
 
-        return default_against_optimised(folder / "store.sqlite", on_change, workers)
+        return default_against_optimised(folder / "store.sqlite", on_change, workers, settings)
