@@ -57,6 +57,8 @@ def main() -> int:
         reason, spent, count = check(shape, deflections)
         seconds.append(spent)
         triangles.append(count)
+        if not sys.stderr.isatty() and (index + 1) % 50 == 0:
+            print(f"{index + 1} of {len(kinds)}, {len(failures)} failed", file=sys.stderr, flush=True)
         if reason:
             failures.append({"index": index, "corner": corner, "reason": reason, "shape": shape, "deg": deflections})
             print(f"{index} {'corner' if corner else 'random'}: {reason}", file=sys.stderr)
