@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -104,6 +106,15 @@ def test_spread_is_rescaled_from_wetted_to_reference_area(make_solution, box, le
     assert wetted_area(box) == pytest.approx(2 * (4 * 2 + 4 * 1 + 2 * 1))
     assert float(data.CL_spread[0]) == pytest.approx(0.01 * 28.0 / 8.0)
     assert float(data.Cm_spread[0]) > 0.0
+
+
+def test_the_spread_of_a_slow_oscillation_is_that_of_the_last_third(box, lengths, make_solution):
+    flow = make_solution(box, smooth, alpha=[0.0, 0.0], verdicts=["converged", "oscillating"], spread=1e-4)
+    history = np.zeros((60, 3))
+    history[45:, 2] = 0.01
+    records = tuple(replace(record, force_history=history) for record in flow.records)
+    data = integrate(replace(flow, records=records), lengths)
+    np.testing.assert_allclose(data.CN_spread, [1e-4 * 28.0 / 8.0, 0.005 * 28.0 / 8.0])
 
 
 def test_every_value_states_units_axes_sign_and_reference(box_mesh, make_solution, lengths):

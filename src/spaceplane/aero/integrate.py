@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from spaceplane.aero.axes import geometry_to_body, wind_axes
-from spaceplane.flow.solution import Solution
+from spaceplane.flow.solution import ConvergenceRecord, Solution
 from spaceplane.mesh.mesh import Mesh
 
 TOTAL = "total"
@@ -127,11 +127,12 @@ def wetted_area(mesh: Mesh) -> float:
 def _spread(solution: Solution, reference: Reference) -> dict[str, np.ndarray]:
     """Half the peak-to-peak of each coefficient in the solver's final window, [condition].
 
+    Forces that still wander may do so more slowly than the window is long: theirs is the last third of the iterations.
     The solver records forces only. What a force spread means for a moment is estimated by letting it act at the wall's
     root-mean-square distance from the moment centre.
     """
     mesh, conditions = solution.mesh, solution.conditions
-    raw = np.array([np.asarray(r.window_spread, dtype=float) for r in solution.records]).reshape(-1, 3)
+    raw = np.array([_wander(record) for record in solution.records]).reshape(-1, 3)
     spread = raw * wetted_area(mesh) / reference.area
     axes = wind_axes(conditions.alpha, conditions.beta)
     size = np.linalg.norm(mesh.piece_area, axis=1)
@@ -147,6 +148,15 @@ def _spread(solution: Solution, reference: Reference) -> dict[str, np.ndarray]:
         "CA": spread[:, 0],
         "CN": up,
     }
+
+
+def _wander(record: ConvergenceRecord) -> np.ndarray:
+    """[3] half peak-to-peak of the recorded forces along x, y, z."""
+    spread = np.asarray(record.window_spread, dtype=float)
+    history = np.asarray(record.force_history, dtype=float)
+    if record.good or len(history) < 3:
+        return spread
+    return np.maximum(spread, 0.5 * np.ptp(history[-(len(history) // 3) :], axis=0))
 
 
 def _dataset(solution: Solution, reference: Reference, values: dict, parts: tuple[str, ...]) -> xr.Dataset:
