@@ -136,6 +136,7 @@ def eigenvalue_plot(comparison: dict):
     """Return a figure of both vehicles' eigenvalues, one panel for each Mach number, matched modes joined by a line."""
     from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
+    from matplotlib.ticker import MaxNLocator
 
     points = comparison["flight_points"]
     figure = Figure(figsize=(3.3 * len(points) + 0.6, 3.5), layout="constrained")
@@ -144,6 +145,7 @@ def eigenvalue_plot(comparison: dict):
         ax.set_title(f"Mach {point['mach']:g}", loc="left", fontsize=10, weight="bold")
         ax.set_xlabel("real part, 1/s", fontsize=8)
         ax.tick_params(labelsize=8)
+        ax.xaxis.set_major_locator(MaxNLocator(4))
     figure.axes[0].set_ylabel("imaginary part, 1/s", fontsize=8)
     entries = [
         Line2D([], [], marker=marker, color=colour, ls="", mfc="none", mew=1.6, label=label)

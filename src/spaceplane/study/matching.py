@@ -12,7 +12,7 @@ from scipy.optimize import linear_sum_assignment
 from spaceplane.environment.constants import STANDARD_GRAVITY
 
 EIGENVALUE_FLOOR = 1e-3  # 1/s: modes slower than this (a quarter of an hour) are compared by their motion alone
-UNMATCHED = 0.75  # cost of leaving one mode of a pair alone; a pair must cost less than two of these
+UNMATCHED = 0.5  # cost of leaving one mode of a pair alone; a pair must cost less than two of these
 
 
 @dataclass(frozen=True)
