@@ -57,7 +57,7 @@ def record_difference(
 @kernel
 def apply_step(topology, state, change, last_change, last_step, combined, weights, slots, largest, limited):
     """state += change - sum of weights[slot, lane] combined[:, slot], scaled cell by cell so that density and
-    pressure change by at most `largest` of themselves.
+    pressure fall by at most `largest` of themselves and rise by twice that.
 
     Keeps the change and the step for the next call. `limited` [chunk, lane] counts cells that were scaled back.
     """
@@ -77,7 +77,9 @@ def apply_step(topology, state, change, last_change, last_step, combined, weight
                         step[k, n] -= weights[s, n] * combined[i, s, k, n]
             for n in range(lanes):
                 real = type(largest)
-                size = max(abs(step[0, n]) / state[i, 0, n], abs(step[4, n]) / state[i, 4, n])
+                x = step[0, n] / state[i, 0, n]
+                y = step[4, n] / state[i, 4, n]
+                size = max(max(real(-1) * x, real(0.5) * x), max(real(-1) * y, real(0.5) * y))
                 factor = largest / size if size > largest else real(1)
                 count[n] += real(1) if size > largest else real(0)
                 step[0, n] *= factor

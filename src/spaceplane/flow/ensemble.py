@@ -130,9 +130,9 @@ class Ensemble:
         )  # fmt: skip
 
     def relax(self) -> None:
-        """Solve for `change` by one symmetric Gauss-Seidel sweep from zero."""
+        """Solve for `change` by symmetric Gauss-Seidel sweeps from zero."""
         self.change[:] = 0
-        for forward in (True, False):
+        for forward in (True, False) * self.settings.sweeps:
             implicit.sweep(
                 self.topology, self.state, self.sensor, self.residual, self.inverse, self.change, self.gamma, forward
             )  # fmt: skip
@@ -144,7 +144,7 @@ class Ensemble:
         """Add the accelerated change to the state; [lane] share of cells that were scaled back.
 
         Args:
-            largest: most that density and pressure of a cell may change, of themselves.
+            largest: most that density and pressure of a cell may fall, of themselves.
             calm: [lane] whether the acceleration may be used.
         """
         t = self.topology

@@ -39,21 +39,22 @@ class Caution:
     cfl_start: float
     cfl_max: float
     growth: float = 1.5
-    largest: float = 0.3
+    largest: float = 0.4
 
 
-def starting_cfl(mach: np.ndarray, caution: Caution) -> np.ndarray:
-    """[lane] first CFL number: 1 above Mach 5, falling there from `cfl_start` at Mach 2."""
-    blend = np.clip((mach - 2.0) / 3.0, 0.0, 1.0)
-    return np.minimum(caution.cfl_start, caution.cfl_start + blend * (1.0 - caution.cfl_start))
+def starting_cfl(mach: np.ndarray, caution: Caution, impulsive: bool) -> np.ndarray:
+    """[lane] first CFL number: a fifth of `cfl_start` from the free stream; falling between Mach 2 and 5, there to 1 or 5."""
+    first = caution.cfl_start * (0.2 if impulsive else 1.0)
+    lowest = min(first, 1.0 if impulsive else 5.0)
+    return first + np.clip((mach - 2.0) / 3.0, 0.0, 1.0) * (lowest - first)
 
 
 def feedback(cfl: np.ndarray, before: np.ndarray, now: np.ndarray, limited: np.ndarray, caution: Caution) -> np.ndarray:
     """[lane] next CFL number: grows while the residual behaves, halves when it jumps or many cells had to be held back."""
     grown = now / np.maximum(before, 1e-300)
     factor = np.where(grown < 1.2, caution.growth, 1.0)
-    factor = np.where(limited > 1e-3, 1.0, factor)
-    factor = np.where((grown > 2.0) | (limited > 1e-2), 0.5, factor)
+    factor = np.where(limited > 3e-2, 1.0, factor)
+    factor = np.where((grown > 2.0) | (limited > 0.1), 0.5, factor)
     return np.clip(cfl * factor, min(0.5, caution.cfl_start), caution.cfl_max)
 
 
@@ -75,6 +76,7 @@ def march(
     stop: Callable[[History], bool],
     finish: Callable[[int, Ensemble, int, History], None],
     tick: Callable[[int, int, float], None],
+    impulsive: bool = False,
 ) -> dict[int, History]:
     """Iterate until every condition has stopped, failed or used up `iterations`.
 
@@ -82,12 +84,13 @@ def march(
         stop: whether a condition with this history is done.
         finish: called once for each condition with (condition, ensemble, lane, history) when it leaves.
         tick: called each iteration with (iteration, active conditions, worst drop in decades).
+        impulsive: whether the state is still the free stream.
 
     Returns:
         History by condition.
     """
     histories = {int(c): History() for c in ensemble.lanes[: ensemble.count]}
-    cfl = starting_cfl(ensemble.conditions.mach[ensemble.lanes], caution)
+    cfl = starting_cfl(ensemble.conditions.mach[ensemble.lanes], caution, impulsive)
     before = None
     limited = np.zeros(len(ensemble.lanes))
     for iteration in range(iterations + 1):

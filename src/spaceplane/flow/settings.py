@@ -28,7 +28,9 @@ class FlowSettings:
         limiter_constant: Venkatakrishnan's K on the body length; variations below (K h / L)^1.5 of the local scale are left alone.
         low_mach: local Mach number below which the low-Mach correction stops shrinking the normal jump; 1 switches it off.
         wall_stiffness: share of the acoustic response to flow through the wall added to the wall pressure (0 to 1).
-        cfl_start, cfl_max: pseudo-time CFL numbers; `cfl_start` is lowered to 1 above Mach 5.
+        cfl_start, cfl_max: pseudo-time CFL numbers; the impulsive start on the coarsest level uses a fifth of `cfl_start`, and above
+            Mach 5 both are lowered (to 1 for the impulsive start).
+        sweeps: symmetric Gauss-Seidel sweeps per iteration.
         anderson_depth: earlier iterates combined by Anderson acceleration; 0 switches it off.
         iterations: most iterations on the fine mesh.
         coarse_iterations: most iterations on each coarse level.
@@ -46,8 +48,9 @@ class FlowSettings:
     limiter_constant: float = 5.0
     low_mach: float = 0.05
     wall_stiffness: float = 0.0
-    cfl_start: float = 5.0
+    cfl_start: float = 25.0
     cfl_max: float = 100.0
+    sweeps: int = 2
     anderson_depth: int = 5
     iterations: int = 120
     coarse_iterations: int = 60
@@ -72,6 +75,7 @@ class FlowSettings:
             ("residual_drop", 0.1, 16.0),
             ("least_drop", 0.0, 16.0),
             ("force_tolerance", 0.0, 1.0),
+            ("sweeps", 1, 20),
             ("anderson_depth", 0, 10),
             ("iterations", 1, 10**6),
             ("coarse_iterations", 1, 10**6),

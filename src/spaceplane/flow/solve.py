@@ -137,7 +137,7 @@ class _Job:
                 stop = partial(converged, settings=settings)
             else:
                 stop = partial(fallen, decades=1.5 if order == 1 else 2.0)
-            march(ensemble, limit, caution, stop, finish, tick)
+            march(ensemble, limit, caution, stop, finish, tick, impulsive=start is None)
             seconds[phase] = seconds.get(phase, 0.0) + time.perf_counter() - began
             start = result
 
