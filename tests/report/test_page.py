@@ -108,6 +108,7 @@ def test_unconverged_conditions_are_warned_about_at_the_top(tmp_path):
     text = words(write_report(folder).read_text(encoding="utf-8"))
     top = text[: text.index("Flight points Ambient")]
     assert "2 warnings" in top
+    assert top.index("condition base: oscillating") < top.index("wall thinner")  # the worse news first
     assert "wall thinner than two cells" in top
     assert "Mach 1.5, condition base: oscillating: forces wander by 0.4 %" in top
     assert "1 of 18 conditions not converged" in top

@@ -75,7 +75,7 @@ def analyse(
     writable_file(json_file, "--json")
     from spaceplane import pipeline
     from spaceplane.report.read import read_result
-    from spaceplane.report.summary import print_summary, shortcomings
+    from spaceplane.report.summary import complain, print_summary, shortcomings
 
     with progress_bar(_bodies(settings)) as tell:
         pipeline.run(subject, settings, folder, tell)
@@ -83,10 +83,7 @@ def analyse(
     write_json(result, json_file)
     if str(json_file) != "-":
         print_summary(result, folder / "report.html")
-    problems = shortcomings(result)
-    if problems:
-        typer.echo(f"not good: {'; '.join(problems[:3])}{' ...' if problems[3:] else ''}", err=True)
-    return 1 if problems else 0
+    return complain(shortcomings(result))
 
 
 def _bodies(settings: AnalyseSettings) -> int:

@@ -49,7 +49,10 @@ def compare(
         typer.echo(compare_page.as_text(comparison))
         for path in files.values():
             typer.echo(path)
-    return 1 if any("failed" in point["flow"] for point in comparison["flight_points"]) else 0
+    from spaceplane.report.summary import complain
+
+    flows = [(point["mach"], verdict) for point in comparison["flight_points"] for verdict in point["flow"]]
+    return complain([f"Mach {mach:g}: flow {verdict}" for mach, verdict in flows if verdict != "converged"])
 
 
 def _read(first: Path, second: Path) -> dict:

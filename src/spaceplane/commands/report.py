@@ -17,10 +17,13 @@ def report(
     folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder that `spaceplane analyse` wrote.")],
     json_file: options.JsonFile = None,
 ) -> int:
-    """Write report.html from the result.json and surface.vtp in a folder."""
+    """Write report.html from the result.json and surface.vtp in a folder.
+
+    Exit code 1, with the report written, when a flow condition in it did not converge.
+    """
     from spaceplane.report import write_report
     from spaceplane.report.read import read_result
-    from spaceplane.report.summary import print_summary
+    from spaceplane.report.summary import complain, print_summary, shortcomings
 
     result = read_result(folder)
     writable_folder(folder, "DIR")
@@ -29,4 +32,4 @@ def report(
     write_json({"report": str(path)}, json_file)
     if str(json_file) != "-":
         print_summary(result, path)
-    return 0
+    return complain(shortcomings(result))

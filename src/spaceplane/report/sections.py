@@ -77,15 +77,18 @@ def unconverged(result: dict) -> list[tuple[str, dict]]:
 
 
 def warnings(result: dict) -> list[str]:
-    """The result's own warnings, the mesh's, and one for each condition that did not converge."""
-    found = list(result.get("warnings") or [])
-    found += [w for w in (result.get("mesh") or {}).get("warnings") or [] if w not in found]
+    """One line for each condition that did not converge, then the result's own warnings and the mesh's."""
+    own = list(result.get("warnings") or [])
+    own += [w for w in (result.get("mesh") or {}).get("warnings") or [] if w not in own]
+    lines = []
     for name, record in unconverged(result):
+        label = str(record.get("label"))
+        said = next((w for w in own if w.startswith(f"{name}, condition {label}:")), None)
+        if said is not None:
+            own.remove(said)
         reason = f": {record['reason']}" if record.get("reason") else ""
-        text = f"{name}, condition {record.get('label')}: {record.get('verdict')}{reason}"
-        if not any(name in w and str(record.get("label")) in w for w in found):
-            found.append(text)
-    return found
+        lines.append(said or f"{name}, condition {label}: {record.get('verdict')}{reason}")
+    return lines + own
 
 
 def _lead(result: dict) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -36,6 +37,15 @@ def shortcomings(result: dict) -> list[str]:
     if not result["flight_points"]:
         found.append("no flight point")
     return found
+
+
+def complain(problems: list[str]) -> int:
+    """Say on stderr what is not good, on one line, and return the exit code: 1, or 0 when there is nothing to say."""
+    if not problems:
+        return 0
+    more = f" and {len(problems) - 3} more" if len(problems) > 3 else ""
+    print(f"not good: {'; '.join(problems[:3])}{more}", file=sys.stderr)
+    return 1
 
 
 def print_summary(result: dict, report: Path | None = None, console: Console | None = None) -> None:

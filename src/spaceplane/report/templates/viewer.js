@@ -129,7 +129,7 @@
   }
   function fit(width, height, rows) { // half-extents on screen, so that every view fills the canvas
     const half = [0, 1].map((r) => extent.reduce((sum, x, k) => sum + Math.abs(rows[r][k]) * x / 2, 0));
-    return Math.min(width / (2 * half[0]), height / (2 * half[1])) * 0.86;
+    return Math.min(width / (2 * half[0]), height / (2 * half[1])) * 0.88;
   }
   let waiting = false;
   function draw() {
@@ -141,7 +141,7 @@
       canvas.width = Math.round(width * ratio);
       canvas.height = Math.round(height * ratio);
     }
-    const rows = axes(), scale = fit(width, height, rows) * state.zoom, distance = 7 * radius;
+    const rows = axes(), scale = fit(width, height - 84, rows) * state.zoom, distance = 7 * radius;
     gl.viewport(0, 0, canvas.width, canvas.height);
     gl.clearColor(0, 0, 0, 0);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
