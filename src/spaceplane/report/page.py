@@ -7,9 +7,10 @@ import json
 from pathlib import Path
 
 from spaceplane.report import sections
+from spaceplane.report.numbers import fixed
 from spaceplane.report.picture import COLOUR_STOPS, stills
 from spaceplane.report.read import level_text, read_result
-from spaceplane.report.surface_data import ColouredSurface, pack, read_surface
+from spaceplane.report.surface_data import ColouredSurface, cp_range, pack, read_surface
 
 NAVIGATION = (
     ("overview", "Overview"),
@@ -76,7 +77,11 @@ def _surface_context(surface: ColouredSurface | None, names: list[str]) -> dict:
         return {"surface": None, "stills": [], "parts": []}
     packed = pack(surface) | {"stops": COLOUR_STOPS}
     drawn = stills(surface, {name: surface.cp[name] for name in names if name in surface.cp})
-    pictures = [(name, base64.b64encode(png).decode()) for name, png in drawn.items()]
+    pictures = []
+    for name, png in drawn.items():
+        low, high = (fixed(value, 2) for value in cp_range(surface.cp[name]))
+        code = base64.b64encode(png).decode()
+        pictures.append({"index": names.index(name), "name": name, "png": code, "low": low, "high": high})
     return {"surface": Markup(json.dumps(packed).replace("</", "<\\/")), "stills": pictures, "parts": packed["parts"]}
 
 

@@ -127,9 +127,13 @@
     const up = [-Math.sin(e) * Math.cos(a), -Math.sin(e) * Math.sin(a), Math.cos(e)];
     return [right, up, toward];
   }
-  function fit(width, height, rows) { // half-extents on screen, so that every view fills the canvas
-    const half = [0, 1].map((r) => extent.reduce((sum, x, k) => sum + Math.abs(rows[r][k]) * x / 2, 0));
-    return Math.min(width / (2 * half[0]), height / (2 * half[1])) * 0.88;
+  const samples = []; // some vertices, relative to the centre: what has to fit on the canvas
+  for (let k = 0, step = 4 * Math.max(1, Math.floor(positions.length / 4 / 3000)); k < positions.length; k += step) {
+    samples.push([0, 1, 2].map((c) => data.lower[c] + (extent[c] * positions[k + c]) / 65535 - center[c]));
+  }
+  function fit(width, height, rows) { // pixels per metre, so that every view fills the canvas
+    const half = [0, 1].map((r) => Math.max(...samples.map((s) => Math.abs(s[0] * rows[r][0] + s[1] * rows[r][1] + s[2] * rows[r][2]))));
+    return Math.min(width / (2 * half[0]), height / (2 * half[1])) * 0.92;
   }
   let waiting = false;
   function draw() {
