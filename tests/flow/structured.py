@@ -14,15 +14,15 @@ FACES = np.array([[0, 4, 7, 3], [1, 2, 6, 5], [0, 1, 5, 4], [3, 7, 6, 2], [0, 3,
 
 
 def quad(corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Area vectors and centroids of (possibly warped) quadrilaterals [face, 4, xyz]."""
+    """Area vectors and centroids of (possibly warped) quadrilaterals [face, 4, xyz]; both diagonals count alike."""
     a, b, c, d = (corners[:, k] for k in range(4))
     area = 0.5 * np.cross(c - a, d - b)
-    one = np.linalg.norm(np.cross(b - a, c - a), axis=1, keepdims=True)
-    two = np.linalg.norm(np.cross(c - a, d - a), axis=1, keepdims=True)
-    total = one + two
-    safe = np.where(total > 0, total, 1.0)
-    center = np.where(total > 0, ((a + b + c) / 3 * one + (a + c + d) / 3 * two) / safe, (a + b + c + d) / 4)
-    return area, center
+    moment, total = np.zeros_like(a), np.zeros((len(a), 1))
+    for one, two, three in ((a, b, c), (a, c, d), (a, b, d), (b, c, d)):
+        weight = np.linalg.norm(np.cross(two - one, three - one), axis=1, keepdims=True)
+        moment += weight * (one + two + three) / 3
+        total += weight
+    return area, np.where(total > 0, moment / np.where(total > 0, total, 1.0), (a + b + c + d) / 4)
 
 
 def from_blocks(blocks: list[np.ndarray], is_wall: Callable[[np.ndarray], np.ndarray], part: str = "body") -> Mesh:
@@ -106,3 +106,33 @@ def sphere(radial: int, side: int, radius: float = 1.0, far: float = 8.0) -> Mes
             direction /= np.linalg.norm(direction, axis=-1, keepdims=True)
             blocks.append(direction[:, :, None, :] * r[None, None, :, None])
     return from_blocks(blocks, lambda c: np.linalg.norm(c, axis=1) < 0.5 * (r[0] + r[1]))
+
+
+def cone(along: int, across: int, around: int, half_angle: float, outer_angle: float) -> Mesh:
+    """Quarter of a unit-length cone about the x axis with its apex at the origin, out to a wider cone; angles in rad.
+
+    The planes y = 0 and z = 0 are slip walls, as symmetry wants them.
+    """
+    x = np.linspace(0.0, 1.0, along + 1)
+    angle = np.linspace(half_angle, outer_angle, across + 1)
+    turn = np.linspace(0.0, np.pi / 2, around + 1)
+    xx, aa, tt = np.meshgrid(x, angle, turn, indexing="ij")
+    r = xx * np.tan(aa)
+    points = np.stack([xx, r * np.cos(tt), r * np.sin(tt)], axis=-1)
+    gap = 1e-6
+
+    def is_wall(c: np.ndarray) -> np.ndarray:
+        radius = np.hypot(c[:, 1], c[:, 2])
+        on_cone = radius < np.maximum(c[:, 0], 1e-9) * np.tan(half_angle) * (1 + gap)
+        return (c[:, 1] < gap) | (c[:, 2] < gap) | (on_cone & (c[:, 0] < 1.0 - gap))
+
+    return from_blocks([points], is_wall)
+
+
+def annulus(n: int, inner: float = 1.0, outer: float = 1.384) -> Mesh:
+    """Quarter of a ring between two radii, n by 2 n cells and one cell thick; curved and flat sides are walls."""
+    r, t, z = np.meshgrid(
+        np.linspace(inner, outer, n + 1), np.linspace(0.0, np.pi / 2, 2 * n + 1), [0.0, outer / n / 4], indexing="ij"
+    )
+    points = np.stack([r * np.sin(t), r * np.cos(t), z], axis=-1)[:, ::-1]
+    return from_blocks([points], lambda c: (c[:, 0] > 1e-6) & (c[:, 1] > 1e-6))

@@ -137,10 +137,13 @@ class Anderson:
         self.gram[slot, : self.used] = row
         self.gram[: self.used, slot] = row
         matrix = np.moveaxis(self.gram[: self.used, : self.used], -1, 0)
-        trace = np.trace(matrix, axis1=1, axis2=2)
-        matrix = matrix + (self.regularisation * trace + 1e-300)[:, None, None] * np.eye(self.used)
         right = products.sum(axis=0).T[..., None]
-        good = calm & np.isfinite(matrix).all(axis=(1, 2)) & np.isfinite(right).all(axis=(1, 2)) & (trace > 0)
+        # A condition that has just broken is left alone here; the march will find it.
+        good = calm & np.isfinite(matrix).all(axis=(1, 2)) & np.isfinite(right).all(axis=(1, 2))
+        matrix = np.where(good[:, None, None], matrix, 0.0)
+        trace = np.trace(matrix, axis1=1, axis2=2)
+        good &= trace > 0
+        matrix = matrix + (self.regularisation * trace)[:, None, None] * np.eye(self.used)
         matrix[~good] = np.eye(self.used)
         gamma = np.linalg.solve(matrix, np.where(good[:, None, None], right, 0.0))[..., 0]
         weights = np.zeros((self.depth, lanes), change.dtype)

@@ -69,6 +69,7 @@ class Ensemble:
         self.free = np.ascontiguousarray(free_stream(self.conditions)[:, self.lanes], dtype=dtype)
         self.state = np.empty((cells, 5, lanes), dtype)
         self.state[:] = self.free
+        self.far = np.ascontiguousarray(np.broadcast_to(self.free, (max(len(self.mesh.far_cell), 1), 5, lanes)))
         self.residual = np.zeros((cells, 5, lanes), dtype)
         self.change = np.zeros((cells, 5, lanes), dtype)
         self.gradient = np.zeros((cells, 15, lanes), dtype) if self.order == 2 else np.zeros((1, 15, lanes), dtype)
@@ -104,7 +105,7 @@ class Ensemble:
         """Fill the residual from state, gradients and sensor."""
         low_mach = self.dtype(self.settings.low_mach if self.order == 2 else 1.0)
         fluxes(
-            self.topology, self.state, self.slopes(), self.sensor, self.free, self.residual, self.gamma, low_mach,
+            self.topology, self.state, self.slopes(), self.sensor, self.far, self.residual, self.gamma, low_mach,
             self.stiffness(), self.order,
         )  # fmt: skip
 
@@ -126,7 +127,7 @@ class Ensemble:
     def factorise(self, cfl: np.ndarray) -> None:
         """Fill the inverse diagonal blocks at the CFL numbers [lane]."""
         implicit.diagonals(
-            self.topology, self.state, self.sensor, self.free, cfl.astype(self.dtype), self.gamma, self.stiffness(), self.inverse
+            self.topology, self.state, self.sensor, self.far, cfl.astype(self.dtype), self.gamma, self.stiffness(), self.inverse
         )  # fmt: skip
 
     def relax(self) -> None:

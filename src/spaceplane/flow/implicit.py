@@ -149,6 +149,7 @@ def diagonals(topology, state, sensor, free, cfl, gamma, stiffness, out):
     """Fill `out` [cell, 25, lane] with the inverse diagonal blocks, pseudo-time term included.
 
     Args:
+        free: [far face, 5, lane] state outside the far field.
         cfl: [lane] CFL number on the sum of spectral radii over the faces.
     """
     lanes = state.shape[2]
@@ -229,6 +230,7 @@ def diagonals(topology, state, sensor, free, cfl, gamma, stiffness, out):
                         block[17, n] += push * nz * ny
                         block[18, n] += push * nz * nz
                 else:
+                    far = row - walls
                     for n in range(lanes):
                         r, u, v, w, a, un = face_average(
                             state[i, 0, n],
@@ -236,11 +238,11 @@ def diagonals(topology, state, sensor, free, cfl, gamma, stiffness, out):
                             state[i, 2, n],
                             state[i, 3, n],
                             state[i, 4, n],
-                            free[0, n],
-                            free[1, n],
-                            free[2, n],
-                            free[3, n],
-                            free[4, n],
+                            free[far, 0, n],
+                            free[far, 1, n],
+                            free[far, 2, n],
+                            free[far, 3, n],
+                            free[far, 4, n],
                             nx,
                             ny,
                             nz,

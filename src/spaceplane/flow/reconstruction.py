@@ -40,7 +40,7 @@ def gradients(topology, state, gradient, sensor, limiter, theta_low, theta_high,
         state: [cell, 5, lane] rho, u, v, w, p.
         limiter: number of the limiter.
         theta_low, theta_high: bounds of the weight of HLLE.
-        smallness: eps^2 of the limiter = min(smallness * size^3, 1e-3) on the local scale of each variable.
+        smallness: eps^2 of the limiter = min(smallness * size^3, 1e-2) on the local scale of each variable.
     """
     cells, _, lanes = state.shape
     start = topology.start
@@ -48,9 +48,6 @@ def gradients(topology, state, gradient, sensor, limiter, theta_low, theta_high,
     stencil_start = topology.stencil_start
     stencil_other = topology.stencil_other
     weight = topology.stencil_weight
-    edge_start = topology.edge_start
-    edge_row = topology.edge_row
-    edge_reach = topology.boundary_reach
     chunk_cells = topology.chunk_cells
     for chunk in prange(chunk_cells.shape[0] - 1):
         high = np.empty((5, WIDTH), state.dtype)
@@ -82,7 +79,7 @@ def gradients(topology, state, gradient, sensor, limiter, theta_low, theta_high,
                         high[k, n] = max(high[k, n], value)
                         low[k, n] = min(low[k, n], value)
             h = topology.size[i]
-            noise = min(smallness * h * h * h, real(1e-3)) + real(1e-12)
+            noise = min(smallness * h * h * h, real(1e-2)) + real(1e-12)
             for n in range(lanes):
                 r = state[i, 0, n]
                 p = state[i, 4, n]
@@ -105,16 +102,6 @@ def gradients(topology, state, gradient, sensor, limiter, theta_low, theta_high,
                     dx = reach[e, 0]
                     dy = reach[e, 1]
                     dz = reach[e, 2]
-                    for k in range(5):
-                        for n in range(lanes):
-                            step = g[3 * k, n] * dx + g[3 * k + 1, n] * dy + g[3 * k + 2, n] * dz
-                            room = high[k, n] if step > real(0) else low[k, n]
-                            phi[k, n] = min(phi[k, n], limit(limiter, room, abs(step), eps2[k, n]))
-                for m in range(edge_start[i], edge_start[i + 1]):
-                    row = edge_row[m]
-                    dx = edge_reach[row, 0]
-                    dy = edge_reach[row, 1]
-                    dz = edge_reach[row, 2]
                     for k in range(5):
                         for n in range(lanes):
                             step = g[3 * k, n] * dx + g[3 * k + 1, n] * dy + g[3 * k + 2, n] * dz

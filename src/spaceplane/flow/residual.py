@@ -33,7 +33,7 @@ def fluxes(topology, state, gradient, sensor, free, residual, gamma, low_mach, s
 
     Args:
         state: [cell, 5, lane]; gradient: [cell, 15, lane] limited; sensor: [cell, lane] weight of HLLE.
-        free: [5, lane] free stream.
+        free: [far face, 5, lane] state outside the far field.
         low_mach: smallest local Mach number to which the normal jump is scaled down; 1 switches the correction off.
         stiffness: see `wall_pressure`.
         order: 1 ignores the gradients.
@@ -165,6 +165,7 @@ def fluxes(topology, state, gradient, sensor, free, residual, gamma, low_mach, s
                         residual[i, 2, n] += q * ny
                         residual[i, 3, n] += q * nz
                 else:
+                    far = row - walls
                     for n in range(lanes):
                         f0, f1, f2, f3, f4 = blend(
                             state[i, 0, n],
@@ -172,11 +173,11 @@ def fluxes(topology, state, gradient, sensor, free, residual, gamma, low_mach, s
                             state[i, 2, n],
                             state[i, 3, n],
                             state[i, 4, n],
-                            free[0, n],
-                            free[1, n],
-                            free[2, n],
-                            free[3, n],
-                            free[4, n],
+                            free[far, 0, n],
+                            free[far, 1, n],
+                            free[far, 2, n],
+                            free[far, 3, n],
+                            free[far, 4, n],
                             nx,
                             ny,
                             nz,

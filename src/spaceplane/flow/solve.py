@@ -114,26 +114,32 @@ class _Job:
             if start is not None:
                 ensemble.state[:, :, : len(which)] = start
                 ensemble.state[:, :, len(which) :] = ensemble.state[:, :, len(which) - 1 : len(which)]
-            phase = f"coarse level {level}, order {order}" if level else "fine"
-            limit = settings.coarse_iterations if level else settings.iterations
+            last = level == 0 and order == settings.order
+            phase = "fine" if last else f"start level {level}, order {order}"
+            limit = settings.iterations if last else settings.coarse_iterations
             refine = level > 0 and order == settings.order
             parent, offset = self._way_down(level) if refine else (np.arange(mesh.cells, dtype=np.int32), None)
             offset = np.zeros((len(parent), 3), settings.dtype) if offset is None else offset
             result = np.empty((len(parent), 5, len(which)), settings.dtype)
 
-            def finish(column, ensemble, lane, history, level=level, result=result, parent=parent, offset=offset):
-                if level == 0:
+            def finish(
+                column, ensemble, lane, history, last=last, result=result, parent=parent, offset=offset, start=start
+            ):
+                if last:
                     self._keep(which[column], ensemble, lane, history)
-                elif history.failure:
-                    # A coarse start that broke is replaced by the free stream; the next level may still succeed.
-                    result[:, :, column] = free_stream(ensemble.conditions)[:, column]
+                elif history.failure or history.drop() < 0.0:
+                    # A level that broke hands on what it was given; the next one may still succeed.
+                    if start is None:
+                        result[:, :, column] = free_stream(ensemble.conditions)[:, column]
+                    else:
+                        result[:, :, column] = start[parent, :, column]
                 else:
                     prolong(parent, offset, ensemble.state, ensemble.slopes(), ensemble.order, lane, result, column)
 
             def tick(iteration, active, worst, phase=phase, limit=limit):
                 self.say(phase, iteration, limit, f"{active} active, {worst:.1f} decades")
 
-            if level == 0:
+            if last:
                 stop = partial(converged, settings=settings)
             else:
                 stop = partial(fallen, decades=1.5 if order == 1 else 2.0)

@@ -1,0 +1,70 @@
+"""What a solution says about its own quality: wall Cp extrema, entropy error, total-enthalpy error."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from spaceplane.flow.solution import Solution
+
+
+@dataclass(frozen=True)
+class Diagnostics:
+    """Quality measures of each condition; NaN where it failed.
+
+    Attributes:
+        cp_max, cp_min: [condition] extrema of the pressure coefficient over the wall faces.
+        cp_stagnation: [condition] exact stagnation value (isentropic, behind a normal shock above Mach 1).
+        entropy_error: [condition] share by which entropy p / rho^gamma falls below the free stream's at worst; in steady
+            flow entropy never falls along a streamline, so any fall is an error.
+        enthalpy_error: [condition] root mean square over volume, within `near` of the wall cells' largest extent, of the
+            total enthalpy's deviation from the free stream's, on the free stream's; zero in exact steady flow.
+    """
+
+    cp_max: np.ndarray
+    cp_min: np.ndarray
+    cp_stagnation: np.ndarray
+    entropy_error: np.ndarray
+    enthalpy_error: np.ndarray
+
+
+def stagnation_cp(mach: np.ndarray, gamma: float = 1.4) -> np.ndarray:
+    """Exact pressure coefficient at a blunt body's stagnation point.
+
+    Isentropic compression below Mach 1 (NACA Report 1135, eq. 44), Rayleigh's pitot formula above (eq. 100).
+    """
+    m2 = np.asarray(mach, dtype=float) ** 2
+    power = gamma / (gamma - 1.0)
+    below = (1.0 + 0.5 * (gamma - 1.0) * m2) ** power
+    shocked = np.maximum(m2, 1.0)
+    above = (0.5 * (gamma + 1.0) * shocked) ** power * ((gamma + 1.0) / (2.0 * gamma * shocked - (gamma - 1.0))) ** (
+        1.0 / (gamma - 1.0)
+    )
+    return (np.where(m2 < 1.0, below, above) - 1.0) / (0.5 * gamma * m2)
+
+
+def diagnose(solution: Solution, near: float = 0.5) -> Diagnostics:
+    """Quality measures of every condition of a solution.
+
+    Args:
+        near: cells closer to the body's box than this share of its longest side count in `enthalpy_error`.
+    """
+    mesh, conditions = solution.mesh, solution.conditions
+    gamma, mach = conditions.gamma, conditions.mach
+    nothing = np.full(len(conditions), np.nan)
+    cp = solution.wall_cp()
+    low, high = mesh.wall_center.min(axis=0), mesh.wall_center.max(axis=0)
+    margin = near * (high - low).max()
+    close = ((mesh.cell_center > low - margin) & (mesh.cell_center < high + margin)).all(axis=1)
+    volume = mesh.cell_volume[close]
+    entropy, enthalpy = nothing.copy(), nothing.copy()
+    for k in range(len(conditions)):
+        r, u, v, w, p = solution.state[:, :, k].astype(np.float64).T
+        if not np.isfinite(r).all():
+            continue
+        entropy[k] = max(0.0, 1.0 - float((gamma * p / r**gamma).min()))
+        total = gamma / (gamma - 1.0) * p / r + 0.5 * (u * u + v * v + w * w)
+        free = 1.0 / (gamma - 1.0) + 0.5 * mach[k] ** 2
+        enthalpy[k] = np.sqrt(volume @ (total[close] / free - 1.0) ** 2 / volume.sum())
+    return Diagnostics(cp.max(axis=0), cp.min(axis=0), stagnation_cp(mach, gamma), entropy, enthalpy)

@@ -1,0 +1,94 @@
+"""Exact solutions: supersonic vortex (order of accuracy), cones, spheres."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from spaceplane.flow.diagnostics import diagnose, stagnation_cp
+from spaceplane.flow.ensemble import Ensemble
+from spaceplane.flow.march import Caution, march
+from spaceplane.flow.settings import FlowSettings
+from spaceplane.flow.solution import FlowConditions
+from spaceplane.flow.solve import solve
+from spaceplane.flow.topology import prepare
+
+from .structured import annulus, cone, sphere
+
+GAMMA = 1.4
+
+
+def vortex(points: np.ndarray, mach: float = 2.25) -> np.ndarray:
+    """[point, 5] supersonic vortex between cylinders (M. Aftosmis, D. Gaitonde, T. S. Tavares, AIAA J. 33 (1995) 2038)."""
+    x, y = points[:, 0], points[:, 1]
+    r = np.hypot(x, y)
+    rho = (1 + 0.5 * (GAMMA - 1) * mach**2 * (1 - 1 / r**2)) ** (1 / (GAMMA - 1))
+    speed = mach / r
+    return np.stack([rho, speed * y / r, -speed * x / r, 0 * r, rho**GAMMA / GAMMA], axis=1)
+
+
+def vortex_error(n: int) -> float:
+    """Mean density error on an n by 2 n ring after convergence."""
+    mesh = annulus(n)
+    settings = FlowSettings(precision="double", limiter="none", flux="hllc")
+    ensemble = Ensemble(
+        mesh, prepare(mesh, np.float64), FlowConditions(np.array([2.25]), np.zeros(1), np.zeros(1)), settings, 2
+    )
+    exact = vortex(mesh.cell_center)[ensemble.topology.order]
+    ensemble.state[:] = exact[:, :, None]
+    ensemble.far[:] = vortex(mesh.far_center)[:, :, None]
+    final = {}
+    histories = march(
+        ensemble, 200, Caution(25.0, 100.0), lambda h: h.drop() > 4.0,
+        lambda c, e, lane, h: final.update(state=e.state[:, :, lane].copy()), lambda *a: None,
+    )  # fmt: skip
+    assert histories[0].drop() > 4.0
+    volume = mesh.cell_volume[ensemble.topology.order]
+    return float(np.abs(final["state"][:, 0] - exact[:, 0]) @ volume / volume.sum())
+
+
+def test_supersonic_vortex_converges_at_second_order():
+    errors = [vortex_error(n) for n in (8, 16, 32)]
+    orders = np.log2(np.array(errors[:-1]) / errors[1:])
+    assert orders[-1] > 1.8, (errors, orders)
+
+
+@pytest.mark.parametrize(
+    ("mach", "angle_deg", "shock_deg", "cp"), [(3.0, 20.0, 29.615, 0.28427), (1.5, 10.0, 42.666, 0.12382)]
+)
+def test_cone_surface_pressure_matches_taylor_maccoll(mach, angle_deg, shock_deg, cp):
+    angle = np.radians(angle_deg)
+    mesh = cone(16, 24, 12, angle, np.radians(shock_deg + 8.0))
+    solution = solve(mesh, FlowConditions(np.array([mach]), np.zeros(1), np.zeros(1)), FlowSettings(coarse_levels=0))
+    assert solution.records[0].good
+    c = mesh.wall_center
+    radius = np.hypot(c[:, 1], c[:, 2])
+    surface = (radius < 1.001 * c[:, 0] * np.tan(angle)) & (c[:, 1] > 1e-6) & (c[:, 2] > 1e-6) & (c[:, 0] > 0.5)
+    found = np.average(solution.wall_cp()[surface, 0], weights=np.linalg.norm(mesh.wall_area[surface], axis=1))
+    assert found == pytest.approx(cp, rel=0.02)
+
+
+@pytest.fixture(scope="module")
+def round_body():
+    mesh = sphere(40, 16, far=8.0)
+    mach = np.array([0.5, 1.5, 2.0, 3.0, 5.0, 10.0])
+    return solve(mesh, FlowConditions(mach, np.zeros(6), np.zeros(6)), FlowSettings())
+
+
+def test_sphere_stagnation_pressure(round_body):
+    found = diagnose(round_body)
+    exact = stagnation_cp(round_body.conditions.mach)
+    np.testing.assert_allclose(exact[1:], [1.5322, 1.6573, 1.7557, 1.8088, 1.8317], atol=1e-4)
+    np.testing.assert_allclose(found.cp_max, exact, rtol=0.03)
+
+
+def test_subsonic_sphere_has_next_to_no_drag(round_body):
+    force = (round_body.wall_cp()[:, :1].astype(float) * round_body.mesh.wall_area).sum(axis=0) / np.pi
+    assert round_body.records[0].good
+    assert abs(force[0]) < 0.02
+    assert np.abs(force[1:]).max() < 1e-3
+
+
+def test_sphere_conditions_converge(round_body):
+    assert [r.verdict for r in round_body.records] == ["converged"] * 6, [r.reason for r in round_body.records]
+    assert diagnose(round_body).enthalpy_error.max() < 0.1

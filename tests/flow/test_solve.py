@@ -1,0 +1,116 @@
+"""The whole solver: ensembles, symmetry, failure handling, records."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from spaceplane.errors import InputError
+from spaceplane.flow.ensemble import Ensemble
+from spaceplane.flow.settings import FlowSettings
+from spaceplane.flow.solution import FlowConditions
+from spaceplane.flow.solve import solve
+
+from .structured import sphere
+
+MESH = sphere(16, 8, far=6.0)
+SMALL = FlowSettings(coarse_levels=1, iterations=60, coarse_iterations=30)
+
+
+def conditions(mach, alpha_deg=None, beta_deg=None):
+    mach = np.array(mach, dtype=float)
+    alpha = np.zeros(len(mach)) if alpha_deg is None else np.radians(alpha_deg)
+    beta = np.zeros(len(mach)) if beta_deg is None else np.radians(beta_deg)
+    return FlowConditions(mach, alpha, beta)
+
+
+def force(solution):
+    """[condition, xyz] pressure force over free-stream dynamic pressure."""
+    return solution.wall_cp().T.astype(float) @ solution.mesh.wall_area
+
+
+@pytest.fixture(scope="module")
+def family():
+    return solve(MESH, conditions([2.0, 3.0, 1.5], [10.0, 10.0, 0.0], [5.0, -5.0, 5.0]), SMALL)
+
+
+def test_a_condition_alone_equals_itself_in_an_ensemble(family):
+    alone = solve(MESH, conditions([3.0], [10.0], [-5.0]), SMALL)
+    assert alone.records[0].iterations == family.records[1].iterations
+    np.testing.assert_allclose(alone.wall_pressure[:, 0], family.wall_pressure[:, 1], rtol=2e-4)
+    np.testing.assert_allclose(force(alone)[0], force(family)[1], rtol=1e-4, atol=1e-4)
+
+
+def test_state_shapes_and_precision(family):
+    assert family.state.shape == (MESH.cells, 5, 3) and family.state.dtype == np.float32
+    assert family.wall_pressure.shape == (len(MESH.wall_cell), 3)
+    assert np.isfinite(family.state).all() and (family.state[:, [0, 4]] > 0).all()
+    for record in family.records:
+        assert len(record.residual_history) == record.iterations + 1 == len(record.force_history)
+        assert record.residual_drop == pytest.approx(-record.residual_history[-1])
+
+
+def test_no_sideslip_means_no_side_force():
+    solution = solve(MESH, conditions([2.0, 0.6], [15.0, 15.0]), SMALL)
+    assert np.abs(force(solution)[:, 1]).max() < 1e-5
+
+
+def test_opposite_sideslip_mirrors():
+    solution = solve(MESH, conditions([2.0, 2.0], [5.0, 5.0], [8.0, -8.0]), SMALL)
+    right, left = force(solution)
+    assert right[1] < -0.05
+    np.testing.assert_allclose(right * [1, -1, 1], left, rtol=2e-3, atol=2e-3)
+
+
+def test_double_precision_agrees_with_single(family):
+    double = solve(MESH, family.conditions, dataclasses.replace(SMALL, precision="double"))
+    assert double.state.dtype == np.float64
+    np.testing.assert_allclose(force(double), force(family), rtol=3e-3, atol=3e-3)
+
+
+def test_a_broken_condition_is_failed_and_the_others_go_on(monkeypatch):
+    plain = Ensemble.apply
+
+    def poison(self, largest, calm):
+        share = plain(self, largest, calm)
+        self.state[0, 0, self.conditions.mach[self.lanes] == 2.5] = np.nan
+        return share
+
+    monkeypatch.setattr(Ensemble, "apply", poison)
+    solution = solve(MESH, conditions([2.0, 2.5], [5.0, 5.0]), SMALL)
+    good, bad = solution.records
+    assert good.good and good.reason == ""
+    assert bad.verdict == "failed" and not bad.good and "not a number" in bad.reason
+    assert np.isnan(solution.state[:, :, 1]).all() and np.isnan(solution.wall_pressure[:, 1]).all()
+    assert np.isfinite(solution.state[:, :, 0]).all()
+    assert solution.statistics["retried"] == [1]
+    assert any("failed" in text for text in solution.statistics["warnings"])
+
+
+def test_too_few_iterations_are_never_called_converged():
+    solution = solve(MESH, conditions([0.8]), dataclasses.replace(SMALL, iterations=3, coarse_levels=0))
+    assert not solution.records[0].good and solution.records[0].reason
+
+
+def test_progress_tells_phases():
+    heard = []
+    solve(MESH, conditions([2.0]), SMALL, lambda phase, done, total, text: heard.append((phase, done, total, text)))
+    assert {"fine"} <= {phase for phase, *_ in heard}
+    assert all(0 <= done <= total for _, done, total, _ in heard)
+
+
+def test_mach_zero_is_refused():
+    with pytest.raises(InputError, match="mach"):
+        solve(MESH, conditions([0.0]), SMALL)
+
+
+def test_more_conditions_than_lanes():
+    mach = np.linspace(2.0, 3.0, 35)
+    solution = solve(
+        sphere(8, 4, far=4.0), conditions(mach), dataclasses.replace(SMALL, coarse_levels=0, iterations=30)
+    )
+    drag = force(solution)[:, 0]
+    assert np.isfinite(drag).all() and len(solution.records) == 35
+    assert np.abs(np.diff(drag)).max() < 0.05 * drag.mean()
