@@ -131,9 +131,13 @@
   for (let k = 0, step = 4 * Math.max(1, Math.floor(positions.length / 4 / 3000)); k < positions.length; k += step) {
     samples.push([0, 1, 2].map((c) => data.lower[c] + (extent[c] * positions[k + c]) / 65535 - center[c]));
   }
-  function fit(width, height, rows) { // pixels per metre, so that every view fills the canvas
-    const half = [0, 1].map((r) => Math.max(...samples.map((s) => Math.abs(s[0] * rows[r][0] + s[1] * rows[r][1] + s[2] * rows[r][2]))));
-    return Math.min(width / (2 * half[0]), height / (2 * half[1])) * 0.92;
+  function fit(width, height, rows) { // pixels per metre and the middle of what is seen: every view fills the canvas
+    const spans = [0, 1].map((r) => {
+      const along = samples.map((s) => s[0] * rows[r][0] + s[1] * rows[r][1] + s[2] * rows[r][2]);
+      return [Math.min(...along), Math.max(...along)];
+    });
+    const sizes = spans.map(([low, high]) => high - low);
+    return { scale: Math.min((width * 0.94) / sizes[0], height / sizes[1]) * 0.94, middle: spans.map(([low, high]) => (low + high) / 2) };
   }
   let waiting = false;
   function draw() {
@@ -145,13 +149,14 @@
       canvas.width = Math.round(width * ratio);
       canvas.height = Math.round(height * ratio);
     }
-    const rows = axes(), scale = fit(width, height - 84, rows) * state.zoom, distance = 7 * radius;
+    const rows = axes(), fitted = fit(width, height - 130, rows), distance = 7 * radius;
+    const scale = fitted.scale * state.zoom;
     gl.viewport(0, 0, canvas.width, canvas.height);
     gl.clearColor(0, 0, 0, 0);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     gl.uniformMatrix3fv(at("turn"), false, [0, 1, 2].flatMap((c) => rows.map((r) => r[c])));
     gl.uniform4f(at("lens"), (2 * scale / width) * distance, (2 * scale / height) * distance, distance, 1.6 * radius);
-    gl.uniform2f(at("shift"), state.shift[0] / scale, -state.shift[1] / scale);
+    gl.uniform2f(at("shift"), state.shift[0] / scale - fitted.middle[0], (12 - state.shift[1]) / scale - fitted.middle[1]);
     const field = data.fields[state.field];
     gl.bindBuffer(gl.ARRAY_BUFFER, fieldBuffers[state.field] || fieldBuffers[0]);
     gl.enableVertexAttribArray(2);
