@@ -367,6 +367,42 @@ def entry_loads() -> str:
     return table(head, lines, "rrrrrr")
 
 
+def comparison_aft() -> str:
+    """Both shapes about 13.0 and 14.8 m: moment derivatives and the fastest growing motion, from the same flows."""
+    lines = []
+    for point in comparison()["flight_points"]:
+        for aft in (0.0, AFT_CENTRE):
+            cells = [cell for side in (0, 1) for cell in _about(point, side, aft)]
+            lines.append((f"{point['mach']:g}", f"{13.0 + aft:.1f} m", *cells))
+    head = ["Mach", "centre"]
+    for name in ("default", "optimised"):
+        head += [f"{name}: `Cm_alpha`", "`Cn_beta`", "fastest growth"]
+    return table(head, lines, "rl" + "rrl" * 2)
+
+
+def _about(point: dict, side: int, aft: float) -> tuple[str, str, str]:
+    """`Cm_alpha`, `Cn_beta` and the fastest growing mode of one shape about a centre moved aft, m."""
+    from spaceplane.dynamics.derivatives import STATIC, Derivatives
+    from spaceplane.dynamics.flightpoint import taem_point
+    from spaceplane.dynamics.linearise import linearise
+    from spaceplane.dynamics.modes import identify
+    from spaceplane.vehicle.presets import horus_2b
+
+    vehicle = horus_2b()
+    values = {row["name"]: row["values"][side] for row in point["derivatives"] + point["coefficients"]}
+    alpha = math.radians(point["alpha_deg"][side])
+    moved = about_aft_centre(values, alpha, aft)
+    normal = values["CL_M"] * math.cos(alpha) + values["CD_M"] * math.sin(alpha)
+    moved["Cm_M"] = values["Cm_M"] + normal * aft / vehicle.reference.chord
+    static = {name: values[name] for name in STATIC} | moved
+    flight = taem_point(point["mach"], alpha_deg=point["alpha_deg"][side])
+    flight = flight.with_coefficients(values["CL"], values["CD"])
+    modes = identify(linearise(flight, vehicle.mass, vehicle.reference, Derivatives(**static)))
+    worst = max(modes, key=lambda mode: mode.eigenvalue.real)
+    growth = "none" if worst.double_time is None else f"{worst.name}, doubles in {worst.double_time:.3g} s"
+    return f"{moved['Cm_alpha']:+.3f}", f"{moved['Cn_beta']:+.3f}", growth
+
+
 def _number(value: float | None) -> str:
     return "-" if value is None else f"{value:.3g}"
 
@@ -408,6 +444,7 @@ BLOCKS: dict[str, Callable[[], str]] = {
     "comparison modes": comparison_modes,
     "comparison levels": comparison_levels,
     "comparison entry loads": entry_loads,
+    "comparison aft centre": comparison_aft,
 }
 
 
