@@ -137,9 +137,21 @@ class Ensemble:
             implicit.sweep(
                 self.topology, self.state, self.sensor, self.residual, self.inverse, self.change, self.gamma, forward
             )  # fmt: skip
+        self.mirror(self.change)
+
+    def load(self, state: np.ndarray) -> None:
+        """Start from `state` [cell, 5, condition], in the kernels' order of cells."""
+        count = state.shape[2]
+        self.state[:, :, :count] = state
+        self.state[:, :, count:] = state[:, :, -1:]
+        # Only changes are made symmetric later, so that an uneven start would stay.
+        self.mirror(self.state)
+
+    def mirror(self, field: np.ndarray) -> None:
+        """Make a field [cell, 5, lane] symmetric in the lanes without sideslip, on meshes that mirror themselves."""
         share = np.where(self.conditions.beta[self.lanes] == 0.0, 0.5, 0.0).astype(self.dtype)
         if len(self.topology.mirror) and share.any():
-            symmetrise(self.topology.mirror, self.change, share)
+            symmetrise(self.topology.mirror, field, share)
 
     def apply(self, largest: float, calm: np.ndarray) -> np.ndarray:
         """Add the accelerated change to the state; [lane] share of cells that were scaled back.

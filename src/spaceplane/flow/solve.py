@@ -112,8 +112,7 @@ class _Job:
             mesh, topology = self.levels.meshes[level], self.topologies[level]
             ensemble = Ensemble(mesh, topology, subset, settings, order)
             if start is not None:
-                ensemble.state[:, :, : len(which)] = start
-                ensemble.state[:, :, len(which) :] = ensemble.state[:, :, len(which) - 1 : len(which)]
+                ensemble.load(start)
             last = level == 0 and order == settings.order
             phase = "fine" if last else f"start level {level}, order {order}"
             limit = settings.iterations if last else settings.coarse_iterations
