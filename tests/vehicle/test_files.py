@@ -12,6 +12,7 @@ from spaceplane.vehicle import export
 from spaceplane.vehicle.build import build
 from spaceplane.vehicle.controls import ControlDeflections
 from spaceplane.vehicle.shape import ShapeParameters
+from spaceplane.vehicle.step import write_step
 from spaceplane.vehicle.stl import read_stl
 from spaceplane.vehicle.surface import Surface
 
@@ -148,13 +149,13 @@ def test_unwritable_outputs_are_refused(tmp_path, vehicle):
 def test_step_without_the_extra_says_how_to_get_it(tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "OCP", None)
     with pytest.raises(InputError, match=r"pip install 'spaceplane\[step\]'"):
-        export.write_step(ShapeParameters(), None, tmp_path / "a.step")
+        write_step(ShapeParameters(), None, tmp_path / "a.step")
     assert not list(tmp_path.iterdir())
 
 
 def test_step_holds_every_solid_by_name(tmp_path):
     pytest.importorskip("OCP")
-    text = export.write_step(ShapeParameters(), None, tmp_path / "a.step").read_text()
+    text = write_step(ShapeParameters(), None, tmp_path / "a.step").read_text()
     for name in ("fuselage", "wing_left", "wing_right", "elevon_left", "rudder_right", "body_flap"):
         assert f"PRODUCT('{name}'" in text
     assert text.count("MANIFOLD_SOLID_BREP") >= 8

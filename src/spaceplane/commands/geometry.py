@@ -33,7 +33,9 @@ def geometry(
     surface = build(subject.shape, deflections)
     with renamed_when_done(out) as partial:
         if out.suffix.lower() in (".step", ".stp"):
-            export.write_step(subject.shape, deflections, partial)
+            from spaceplane.vehicle.step import write_step
+
+            write_step(subject.shape, deflections, partial)
         else:
             write = {".stl": export.write_stl, ".glb": export.write_glb, ".png": export.write_png}[out.suffix.lower()]
             write(surface, partial)

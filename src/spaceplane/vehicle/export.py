@@ -152,14 +152,3 @@ def write_png(
     except RuntimeError as err:
         raise InputError(f"output file '{path}': no off-screen rendering on this machine ({err})") from err
     return path
-
-
-def write_step(shape, deflections, path: str | Path) -> Path:
-    """STEP file of the vehicle's parts as an unfused compound of smooth solids; see `spaceplane.vehicle.step`.
-
-    Raises:
-        InputError: the optional extra is not installed, or the file cannot be written.
-    """
-    from spaceplane.vehicle.step import write_step as write
-
-    return write(shape, deflections, path)
