@@ -197,8 +197,16 @@ def demo_modes() -> str:
             value = f"{re:.4g}" + (f" ± {abs(im):.4g}i" if mode["oscillatory"] else "")
             half, double = mode["half_time_s"], mode["double_time_s"]
             time = f"half {half:.3g} s" if half is not None else "-" if double is None else f"doubles {double:.3g} s"
-            rows.append((f"{point['mach']:g}", mode["name"], value, time, number(mode["damping_ratio"], 3)))
-    return table(("Mach", "mode", "eigenvalue, 1/s", "amplitude", "damping ratio"), rows, "rlrrr")
+            level = worst_level(point["verdicts"], mode["name"])
+            rows.append((f"{point['mach']:g}", mode["name"], value, time, number(mode["damping_ratio"], 3), level))
+    return table(("Mach", "mode", "eigenvalue, 1/s", "amplitude", "damping ratio", "level"), rows, "rlrrrl")
+
+
+def worst_level(verdicts: Sequence[dict], mode: str) -> str:
+    """The worst MIL-F-8785C level of a mode over its criteria; a dash where none applies."""
+    order = [1, 2, 3, "below 3"]
+    levels = [v["level"] for v in verdicts if v["mode"] == mode and v["applicable"] and v["level"] is not None]
+    return str(max(levels, key=order.index)) if levels else "-"
 
 
 def demo_levels() -> str:

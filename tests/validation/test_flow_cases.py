@@ -47,7 +47,7 @@ def test_wall_faces_of_a_part_are_its_own(cone):
 
 def test_finer_walls_for_thin_shock_layers():
     assert cones.wall_cell(10.0, math.radians(10.0), True) < cones.wall_cell(3.0, math.radians(10.0), True)
-    assert cones.wall_cell(1.5, math.radians(10.0), True) == 1.0 / 80
+    assert cones.wall_cell(1.5, math.radians(10.0), True) == 1.0 / 60
 
 
 class TestMomentCenterFit:

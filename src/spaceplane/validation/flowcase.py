@@ -13,10 +13,13 @@ from spaceplane.mesh.settings import MeshSettings
 from spaceplane.vehicle.properties import ReferenceLengths
 from spaceplane.vehicle.surface import Surface
 
+ITERATIONS = 250
+"""More patience than an analysis has: a validation case should not fail for want of iterations."""
+
 
 def solve_body(surface: Surface, mesh: MeshSettings, conditions: FlowConditions) -> Solution:
-    """Mesh the body and solve every condition on the flow's default settings."""
-    return solve(generate(surface, mesh), conditions, FlowSettings())
+    """Mesh the body and solve every condition; default flow settings but for the number of iterations allowed."""
+    return solve(generate(surface, mesh), conditions, FlowSettings(iterations=ITERATIONS))
 
 
 def reference_of(
