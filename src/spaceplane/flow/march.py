@@ -59,14 +59,33 @@ def feedback(cfl: np.ndarray, before: np.ndarray, now: np.ndarray, limited: np.n
 
 
 def converged(history: History, settings: FlowSettings) -> bool:
-    """Whether a condition may stop on the fine mesh: residual and force window together."""
-    if len(history.residual) <= settings.window:
+    """Whether a condition is good on the fine mesh: residual and force window together.
+
+    Either the residual fell by `residual_drop` with forces within ten times the tolerance, or by half a decade more than
+    `least_drop` with forces standing over one window, or by `least_drop` with forces standing over three.
+    """
+    window, tolerance, drop = settings.window, settings.force_tolerance, history.drop()
+    length = len(history.residual)
+    if length <= window:
         return False
-    spread = history.spread(settings.window)
-    drop = history.drop()
-    return (drop >= settings.residual_drop and spread < 10 * settings.force_tolerance) or (
-        drop >= settings.least_drop and spread < settings.force_tolerance
-    )
+    if drop >= settings.residual_drop:
+        return history.spread(window) < 10 * tolerance
+    if drop >= settings.least_drop + 0.5:
+        return history.spread(window) < tolerance
+    return drop >= settings.least_drop and length > 3 * window and history.spread(3 * window) < tolerance
+
+
+def stalled(history: History, settings: FlowSettings) -> bool:
+    """Whether more iterations bring nothing: no better residual for four windows while forces wander within a bound."""
+    span = 4 * settings.window
+    if len(history.residual) <= 2 * span:
+        return False
+    return min(history.residual[-span:]) > 0.8 * min(history.residual[:-span]) and history.spread(span) < 0.02
+
+
+def finished(history: History, settings: FlowSettings) -> bool:
+    """Whether a condition leaves the ensemble before its iterations are used up."""
+    return converged(history, settings) or stalled(history, settings)
 
 
 def march(

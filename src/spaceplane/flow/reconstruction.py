@@ -83,12 +83,12 @@ def gradients(topology, state, gradient, sensor, limiter, theta_low, theta_high,
             for n in range(lanes):
                 r = state[i, 0, n]
                 p = state[i, 4, n]
-                a2 = gamma * p / r
-                speed2 = a2 + state[i, 1, n] ** 2 + state[i, 2, n] ** 2 + state[i, 3, n] ** 2
+                # The sound speed, not the flow's, is the scale of velocities: a tenth of Mach 10 would be no noise.
+                sound2 = noise * gamma * p / r
                 eps2[0, n] = noise * r * r
-                eps2[1, n] = noise * speed2
-                eps2[2, n] = noise * speed2
-                eps2[3, n] = noise * speed2
+                eps2[1, n] = sound2
+                eps2[2, n] = sound2
+                eps2[3, n] = sound2
                 eps2[4, n] = noise * (gamma * p) * (gamma * p)
                 ratio = max(high[4, n] / p, p / low[4, n])
                 squeeze = -(g[3, n] + g[7, n] + g[11, n])

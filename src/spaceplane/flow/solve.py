@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -12,7 +13,7 @@ from spaceplane.errors import InputError
 from spaceplane.flow.coarsen import Sequence, sequence
 from spaceplane.flow.compiled import WIDTH, is_compiled, mark_compiled
 from spaceplane.flow.ensemble import Ensemble, free_stream
-from spaceplane.flow.march import Caution, History, converged, march
+from spaceplane.flow.march import Caution, History, converged, finished, march
 from spaceplane.flow.prolong import prolong
 from spaceplane.flow.settings import FlowSettings, check
 from spaceplane.flow.solution import ConvergenceRecord, FlowConditions, Solution
@@ -62,11 +63,12 @@ def solve(
     caution = Caution(settings.cfl_start, settings.cfl_max)
     for which in np.array_split(np.arange(len(conditions)), -(-len(conditions) // WIDTH)):
         job.run(which, caution, seconds)
-    retry = np.array([c for c in range(len(conditions)) if not job.histories[c].done and job.worth_retry(c)], dtype=int)
+    retry = np.array([c for c in range(len(conditions)) if job.worth_retry(c)], dtype=int)
     if len(retry):
         say("retry", 0, len(retry), f"{len(retry)} conditions once more, carefully")
+        job.settings = replace(settings, limiter_constant=min(1.0, settings.limiter_constant))
         for which in np.array_split(retry, -(-len(retry) // WIDTH)):
-            job.run(which, Caution(1.0, min(10.0, settings.cfl_max), 1.15, 0.1), seconds)
+            job.run(which, Caution(min(5.0, settings.cfl_start), min(25.0, settings.cfl_max), 1.2, 0.25), seconds)
     if cold:
         mark_compiled(settings.precision)
     records = tuple(judge(job.histories[c], settings) for c in range(len(conditions)))
@@ -98,9 +100,9 @@ class _Job:
         self.histories: dict[int, History] = {}
 
     def worth_retry(self, condition: int) -> bool:
-        """A condition that broke, or whose residual ended above where it began."""
+        """A condition that broke, or whose residual hardly fell: again with smaller steps and a stricter limiter."""
         history = self.histories[condition]
-        return bool(history.failure) or history.drop() < 0.5
+        return bool(history.failure) or (not converged(history, self.settings) and history.drop() < 0.8)
 
     def run(self, which: np.ndarray, caution: Caution, seconds: dict[str, float]) -> None:
         """March the conditions `which` through all levels, coarse to fine."""
@@ -139,7 +141,7 @@ class _Job:
                 self.say(phase, iteration, limit, f"{active} active, {worst:.1f} decades")
 
             if last:
-                stop = partial(converged, settings=settings)
+                stop = partial(finished, settings=settings)
             else:
                 stop = partial(fallen, decades=1.5 if order == 1 else 2.0)
             march(ensemble, limit, caution, stop, finish, tick, impulsive=start is None)
@@ -159,7 +161,7 @@ class _Job:
     def _keep(self, condition, ensemble, lane, history):
         """Store a fine-mesh result, unless an earlier attempt was better."""
         earlier = self.histories.get(int(condition))
-        if earlier is not None and history.failure and not earlier.failure:
+        if earlier is not None and not earlier.failure and (history.failure or history.drop() < earlier.drop()):
             return
         self.histories[int(condition)] = history
         if history.failure:
@@ -185,11 +187,13 @@ def fallen(history: History, decades: float) -> bool:
 def judge(history: History, settings: FlowSettings) -> ConvergenceRecord:
     """The verdict on one condition, from residual and force window together."""
     residual, force = np.array(history.residual), np.array(history.force)
-    window = force[-settings.window :]
+    good = not history.failure and converged(history, settings)
+    # What still wanders is averaged over the longer window by which it is judged.
+    window = force[-settings.window if good else -4 * settings.window :]
     drop, spread = history.drop(), history.spread(settings.window)
     if history.failure:
         verdict, reason = "failed", history.failure
-    elif converged(history, settings):
+    elif good:
         verdict, reason = "converged", ""
     else:
         long = history.spread(4 * settings.window)
