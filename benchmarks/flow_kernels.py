@@ -18,7 +18,6 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests"))
 
 from flow.structured import box
-
 from spaceplane.flow.ensemble import Ensemble
 from spaceplane.flow.settings import FlowSettings
 from spaceplane.flow.solution import FlowConditions

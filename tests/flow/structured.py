@@ -1,4 +1,5 @@
-"""Body-fitted meshes for tests: structured blocks of hexahedra, joined where their points coincide, made into a Mesh."""
+"""Body-fitted meshes for tests: structured blocks of hexahedra, joined where their points coincide, made into a
+Mesh."""
 
 from __future__ import annotations
 
@@ -28,7 +29,8 @@ def quad(corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 def from_blocks(blocks: list[np.ndarray], is_wall: Callable[[np.ndarray], np.ndarray], part: str = "body") -> Mesh:
     """Mesh of all hexahedra of right-handed blocks of points [i, j, k, xyz].
 
-    Faces with the same corner points are joined, faces without area dropped; of those left over, `is_wall` tells from the
+    Faces with the same corner points are joined, faces without area dropped; of those left over, `is_wall` tells from
+    the
     centres [face, xyz] which are walls; the others are far field.
     """
     points = np.concatenate([block.reshape(-1, 3) for block in blocks])
@@ -69,14 +71,24 @@ def from_blocks(blocks: list[np.ndarray], is_wall: Callable[[np.ndarray], np.nda
     wall = is_wall(center[edge])
     w, f = edge[wall], edge[~wall]
     return Mesh(
-        cell_volume=volume, cell_center=moment / volume[:, None], cell_size=np.cbrt(volume),
+        cell_volume=volume,
+        cell_center=moment / volume[:, None],
+        cell_size=np.cbrt(volume),
         face_cells=np.stack([owner[first[inner]], owner[second[inner]]], axis=1).astype(np.int32),
-        face_area=0.5 * (area[first[inner]] - area[second[inner]]), face_center=center[first[inner]],
-        wall_cell=owner[w].astype(np.int32), wall_area=area[w], wall_center=center[w],
-        far_cell=owner[f].astype(np.int32), far_area=area[f], far_center=center[f],
-        piece_wall=np.arange(len(w), dtype=np.int32), piece_area=area[w], piece_center=center[w],
-        piece_part=np.zeros(len(w), dtype=np.int32), part_names=(part,),
-    )  # fmt: skip
+        face_area=0.5 * (area[first[inner]] - area[second[inner]]),
+        face_center=center[first[inner]],
+        wall_cell=owner[w].astype(np.int32),
+        wall_area=area[w],
+        wall_center=center[w],
+        far_cell=owner[f].astype(np.int32),
+        far_area=area[f],
+        far_center=center[f],
+        piece_wall=np.arange(len(w), dtype=np.int32),
+        piece_area=area[w],
+        piece_center=center[w],
+        piece_part=np.zeros(len(w), dtype=np.int32),
+        part_names=(part,),
+    )
 
 
 def nowhere(center: np.ndarray) -> np.ndarray:
@@ -94,7 +106,8 @@ def box(n: int | tuple[int, int, int], perturb: float = 0.0, seed: int = 1) -> M
 
 
 def sphere(radial: int, side: int, radius: float = 1.0, far: float = 8.0) -> Mesh:
-    """Sphere in a ball: six patches of a projected cube, `side` cells along each cube edge, `radial` layers, no pole."""
+    """Sphere in a ball: six patches of a projected cube, `side` cells along each cube edge, `radial` layers, no
+    pole."""
     angle = np.tan(np.linspace(-np.pi / 4, np.pi / 4, side + 1))
     r = np.geomspace(radius, far, radial + 1)
     blocks = []

@@ -19,7 +19,8 @@ GAMMA = 1.4
 
 
 def vortex(points: np.ndarray, mach: float = 2.25) -> np.ndarray:
-    """[point, 5] supersonic vortex between cylinders (M. Aftosmis, D. Gaitonde, T. S. Tavares, AIAA J. 33 (1995) 2038)."""
+    """[point, 5] supersonic vortex between cylinders (M. Aftosmis, D. Gaitonde, T. S. Tavares, AIAA J. 33 (1995)
+    2038)."""
     x, y = points[:, 0], points[:, 1]
     r = np.hypot(x, y)
     rho = (1 + 0.5 * (GAMMA - 1) * mach**2 * (1 - 1 / r**2)) ** (1 / (GAMMA - 1))
@@ -39,9 +40,13 @@ def vortex_error(n: int) -> float:
     ensemble.far[:] = vortex(mesh.far_center)[:, :, None]
     final = {}
     histories = march(
-        ensemble, 200, Caution(25.0, 100.0), lambda h: h.drop() > 4.0,
-        lambda c, e, lane, h: final.update(state=e.state[:, :, lane].copy()), lambda *a: None,
-    )  # fmt: skip
+        ensemble,
+        200,
+        Caution(25.0, 100.0),
+        lambda h: h.drop() > 4.0,
+        lambda c, e, lane, h: final.update(state=e.state[:, :, lane].copy()),
+        lambda *a: None,
+    )
     assert histories[0].drop() > 4.0
     volume = mesh.cell_volume[ensemble.topology.order]
     return float(np.abs(final["state"][:, 0] - exact[:, 0]) @ volume / volume.sum())

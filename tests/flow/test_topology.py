@@ -41,7 +41,8 @@ def test_gradients_of_linear_fields_are_exact(mesh):
 
 
 def test_conservation_interior_fluxes_cancel():
-    """The sum of all residuals is the flux through the boundary alone: here it equals that of a field constant near it."""
+    """The sum of all residuals is the flux through the boundary alone: here it equals that of a field constant near
+    it."""
     mesh = box(8, 0.2)
     ensemble = ensemble_on(mesh)
     middle = np.linalg.norm(mesh.cell_center[ensemble.topology.order] - 0.5, axis=1) < 0.2

@@ -119,7 +119,8 @@ class Anderson:
             setattr(self, name, np.ascontiguousarray(getattr(self, name)[..., source]))
 
     def weights(self, topology: Topology, change: np.ndarray, calm: np.ndarray) -> np.ndarray:
-        """[slot, lane] weights of the stored differences; zero for lanes that are not `calm` (their residual jumped)."""
+        """[slot, lane] weights of the stored differences; zero for lanes that are not `calm` (their residual
+        jumped)."""
         lanes = change.shape[2]
         if not self.depth or not self.started:
             self.started = True
@@ -130,9 +131,18 @@ class Anderson:
         shape = (len(topology.chunk_cells) - 1, self.used, lanes)
         products, gram = np.zeros(shape), np.zeros(shape)
         record_difference(
-            topology, change, self.last_change, self.last_step, self.scale, slot, self.used, self.differences, self.combined,
-            products, gram,
-        )  # fmt: skip
+            topology,
+            change,
+            self.last_change,
+            self.last_step,
+            self.scale,
+            slot,
+            self.used,
+            self.differences,
+            self.combined,
+            products,
+            gram,
+        )
         row = gram.sum(axis=0)
         self.gram[slot, : self.used] = row
         self.gram[: self.used, slot] = row

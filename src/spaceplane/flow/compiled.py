@@ -12,7 +12,8 @@ import tempfile
 from collections.abc import Callable
 from pathlib import Path
 
-# Spinning OpenMP threads doubled the CPU time of ensembles; wait passively. Must be set before numba starts its threads.
+# Spinning OpenMP threads doubled the CPU time of ensembles; wait passively. Must be set before numba starts its
+# threads.
 os.environ.setdefault("OMP_WAIT_POLICY", "passive")
 os.environ.setdefault("GOMP_SPINCOUNT", "0")
 
@@ -47,7 +48,8 @@ def writable(folder: Path) -> bool:
 
 
 def cache_root() -> Path:
-    """Folder of all kernel caches: NUMBA_CACHE_DIR, else beside the sources, else the user's cache, else a temporary one."""
+    """Folder of all kernel caches: NUMBA_CACHE_DIR, else beside the sources, else the user's cache, else a temporary
+    one."""
     asked = os.environ.get("NUMBA_CACHE_DIR")
     user = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
     choices = [Path(asked)] if asked else []

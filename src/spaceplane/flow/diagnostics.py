@@ -16,9 +16,11 @@ class Diagnostics:
     Attributes:
         cp_max, cp_min: [condition] extrema of the pressure coefficient over the wall faces.
         cp_stagnation: [condition] exact stagnation value (isentropic, behind a normal shock above Mach 1).
-        entropy_error: [condition] share by which entropy p / rho^gamma falls below the free stream's at worst; in steady
+        entropy_error: [condition] share by which entropy p / rho^gamma falls below the free stream's at worst; in
+            steady
             flow entropy never falls along a streamline, so any fall is an error.
-        enthalpy_error: [condition] root mean square over volume, within `near` of the wall cells' largest extent, of the
+        enthalpy_error: [condition] root mean square over volume, within `near` of the wall cells' largest extent, of
+            the
             total enthalpy's deviation from the free stream's, on the free stream's; zero in exact steady flow.
     """
 

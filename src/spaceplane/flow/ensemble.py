@@ -98,16 +98,32 @@ class Ensemble:
             self.sensor[:] = self.low
             return
         gradients(
-            self.topology, self.state, self.gradient, self.sensor, self.limiter, self.low, self.high, self.smallness, self.gamma
-        )  # fmt: skip
+            self.topology,
+            self.state,
+            self.gradient,
+            self.sensor,
+            self.limiter,
+            self.low,
+            self.high,
+            self.smallness,
+            self.gamma,
+        )
 
     def balance(self) -> None:
         """Fill the residual from state, gradients and sensor."""
         low_mach = self.dtype(self.settings.low_mach if self.order == 2 else 1.0)
         fluxes(
-            self.topology, self.state, self.slopes(), self.sensor, self.far, self.residual, self.gamma, low_mach,
-            self.stiffness(), self.order,
-        )  # fmt: skip
+            self.topology,
+            self.state,
+            self.slopes(),
+            self.sensor,
+            self.far,
+            self.residual,
+            self.gamma,
+            low_mach,
+            self.stiffness(),
+            self.order,
+        )
 
     def slopes(self) -> np.ndarray:
         """Gradients; on first-order levels zeros, of which the kernels read only those of wall cells, times zero."""
@@ -127,8 +143,15 @@ class Ensemble:
     def factorise(self, cfl: np.ndarray) -> None:
         """Fill the inverse diagonal blocks at the CFL numbers [lane]."""
         implicit.diagonals(
-            self.topology, self.state, self.sensor, self.far, cfl.astype(self.dtype), self.gamma, self.stiffness(), self.inverse
-        )  # fmt: skip
+            self.topology,
+            self.state,
+            self.sensor,
+            self.far,
+            cfl.astype(self.dtype),
+            self.gamma,
+            self.stiffness(),
+            self.inverse,
+        )
 
     def relax(self) -> None:
         """Solve for `change` by symmetric Gauss-Seidel sweeps from zero."""
@@ -136,7 +159,7 @@ class Ensemble:
         for forward in (True, False) * self.settings.sweeps:
             implicit.sweep(
                 self.topology, self.state, self.sensor, self.residual, self.inverse, self.change, self.gamma, forward
-            )  # fmt: skip
+            )
         self.mirror(self.change)
 
     def load(self, state: np.ndarray) -> None:
@@ -164,9 +187,17 @@ class Ensemble:
         weights = self.anderson.weights(t, self.change, calm)
         limited = np.zeros((len(t.chunk_cells) - 1, self.state.shape[2]), self.dtype)
         apply_step(
-            t, self.state, self.change, self.anderson.last_change, self.anderson.last_step, self.anderson.combined, weights,
-            self.anderson.used, self.dtype(largest), limited,
-        )  # fmt: skip
+            t,
+            self.state,
+            self.change,
+            self.anderson.last_change,
+            self.anderson.last_step,
+            self.anderson.combined,
+            weights,
+            self.anderson.used,
+            self.dtype(largest),
+            limited,
+        )
         return limited.sum(axis=0, dtype=np.float64) / self.mesh.cells
 
     def wall_pressure(self) -> np.ndarray:

@@ -126,7 +126,8 @@ def add_mass(block, n, scale, r, u, v, w, gamma):
 
 @inlined
 def invert(block, lanes):
-    """Invert the 5 x 5 blocks [25, lane] in place (Gauss-Jordan; the blocks are diagonally dominant enough for no pivoting)."""
+    """Invert the 5 x 5 blocks [25, lane] in place (Gauss-Jordan; the blocks are diagonally dominant enough for no
+    pivoting)."""
     for k in range(5):
         for n in range(lanes):
             block[6 * k, n] = type(block[0, n])(1) / block[6 * k, n]
@@ -263,7 +264,8 @@ def diagonals(topology, state, sensor, free, cfl, gamma, stiffness, out):
 
 @kernel
 def sweep(topology, state, sensor, residual, inverse, change, gamma, forward):
-    """One Gauss-Seidel pass over all cells, colour by colour: change_i = D^-1 (-residual_i - sum of off-diagonal products).
+    """One Gauss-Seidel pass over all cells, colour by colour: change_i = D^-1 (-residual_i - sum of off-diagonal
+    products).
 
     Blocks of one colour do not touch, so that the result does not depend on the number of threads.
     """

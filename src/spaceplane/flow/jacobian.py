@@ -1,7 +1,9 @@
 """Pieces of the first-order Jacobian, in increments of the primitive variables (rho, u, v, w, p).
 
-The linearised flux through a face is half of (A_i dq_i + A_j dq_j) - Q (dq_j - dq_i), with Q the dissipation matrix of the
-flux actually used: eigenvalues |un +- a| on sound waves and `d0` on entropy and shear waves (|un| for HLLC, the chord of
+The linearised flux through a face is half of (A_i dq_i + A_j dq_j) - Q (dq_j - dq_i), with Q the dissipation matrix
+of the
+flux actually used: eigenvalues |un +- a| on sound waves and `d0` on entropy and shear waves (|un| for HLLC, the chord
+of
 HLLE between the sound waves for HLLE). Q must match the flux, else large CFL numbers diverge.
 Wave decomposition: P. L. Roe, J. Comput. Phys. 43 (1981) 357-372.
 """

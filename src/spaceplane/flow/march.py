@@ -43,14 +43,16 @@ class Caution:
 
 
 def starting_cfl(mach: np.ndarray, caution: Caution, impulsive: bool) -> np.ndarray:
-    """[lane] first CFL number: a fifth of `cfl_start` from the free stream; falling between Mach 2 and 5, there to 1 or 5."""
+    """[lane] first CFL number: a fifth of `cfl_start` from the free stream; falling between Mach 2 and 5, there to 1
+    or 5."""
     first = caution.cfl_start * (0.2 if impulsive else 1.0)
     lowest = min(first, 1.0 if impulsive else 5.0)
     return first + np.clip((mach - 2.0) / 3.0, 0.0, 1.0) * (lowest - first)
 
 
 def feedback(cfl: np.ndarray, before: np.ndarray, now: np.ndarray, limited: np.ndarray, caution: Caution) -> np.ndarray:
-    """[lane] next CFL number: grows while the residual behaves, halves when it jumps or many cells had to be held back."""
+    """[lane] next CFL number: grows while the residual behaves, halves when it jumps or many cells had to be held
+    back."""
     grown = now / np.maximum(before, 1e-300)
     factor = np.where(grown < 1.2, caution.growth, 1.0)
     factor = np.where(limited > 3e-2, 1.0, factor)
@@ -61,7 +63,8 @@ def feedback(cfl: np.ndarray, before: np.ndarray, now: np.ndarray, limited: np.n
 def converged(history: History, settings: FlowSettings) -> bool:
     """Whether a condition is good on the fine mesh: residual and force window together.
 
-    Either the residual fell by `residual_drop` with forces within ten times the tolerance, or by half a decade more than
+    Either the residual fell by `residual_drop` with forces within ten times the tolerance, or by half a decade more
+    than
     `least_drop` with forces standing over one window, or by `least_drop` with forces standing over three.
     """
     window, tolerance, drop = settings.window, settings.force_tolerance, history.drop()

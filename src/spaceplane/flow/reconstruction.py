@@ -22,7 +22,8 @@ def limit(kind, room, step, eps2):
 
 @inlined
 def shock_weight(ratio, compression, low, high):
-    """Weight of HLLE: 0 below the pressure ratio 2.5, 1 above 3.5, smooth between, only in compression; within [low, high]."""
+    """Weight of HLLE: 0 below the pressure ratio 2.5, 1 above 3.5, smooth between, only in compression; within [low,
+    high]."""
     real = type(ratio)
     x = min(max(ratio - real(2.5), real(0)), real(1))
     weight = x * x * (real(3) - real(2) * x)
@@ -42,7 +43,7 @@ def gradients(topology, state, gradient, sensor, limiter, theta_low, theta_high,
         theta_low, theta_high: bounds of the weight of HLLE.
         smallness: eps^2 of the limiter = min(smallness * size^3, 1e-2) on the local scale of each variable.
     """
-    cells, _, lanes = state.shape
+    lanes = state.shape[2]
     start = topology.start
     reach = topology.reach
     stencil_start = topology.stencil_start

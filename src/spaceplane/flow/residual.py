@@ -20,7 +20,8 @@ def guarded(value, step):
 
 @inlined
 def wall_pressure(r, u, v, w, p, p_wall, nx, ny, nz, gamma, stiffness):
-    """Pressure on a slip wall: the reconstructed one plus `stiffness` times the acoustic response to flow through the wall."""
+    """Pressure on a slip wall: the reconstructed one plus `stiffness` times the acoustic response to flow through the
+    wall."""
     real = type(r)
     un = u * nx + v * ny + w * nz
     push = stiffness * r * math.sqrt(gamma * p / r) * un

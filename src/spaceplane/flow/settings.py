@@ -25,10 +25,13 @@ class FlowSettings:
         order: 2, or 1 for a first-order solution.
         flux: name in `fluxes.FLUXES`.
         limiter: name in `limiters.LIMITERS`.
-        limiter_constant: Venkatakrishnan's K on the body length; variations below (K h / L)^1.5 of the local scale are left alone.
-        low_mach: local Mach number below which the low-Mach correction stops shrinking the normal jump; 1 switches it off.
+        limiter_constant: Venkatakrishnan's K on the body length; variations below (K h / L)^1.5 of the local scale
+            are left alone.
+        low_mach: local Mach number below which the low-Mach correction stops shrinking the normal jump; 1 switches it
+            off.
         wall_stiffness: share of the acoustic response to flow through the wall added to the wall pressure (0 to 1).
-        cfl_start, cfl_max: pseudo-time CFL numbers; the impulsive start on the coarsest level uses a fifth of `cfl_start`, and above
+        cfl_start, cfl_max: pseudo-time CFL numbers; the impulsive start on the coarsest level uses a fifth of
+            `cfl_start`, and above
             Mach 5 both are lowered (to 1 for the impulsive start).
         sweeps: symmetric Gauss-Seidel sweeps per iteration.
         anderson_depth: earlier iterates combined by Anderson acceleration; 0 switches it off.
@@ -37,7 +40,8 @@ class FlowSettings:
         coarse_levels: number of coarse levels to start on.
         residual_drop: decades that the density residual must fall on the fine mesh to stop at once.
         least_drop: decades below which nothing is called converged.
-        force_tolerance: half peak-to-peak of the force over the window, on the force's size, to stop after `least_drop`.
+        force_tolerance: half peak-to-peak of the force over the window, on the force's size, to stop after
+            `least_drop`.
         window: iterations of the force window.
     """
 

@@ -38,7 +38,8 @@ def solve(
         progress: called with (phase, done, total, text).
 
     Returns:
-        Solution with one ConvergenceRecord per condition. A condition that fails twice has NaN as state and wall pressure
+        Solution with one ConvergenceRecord per condition. A condition that fails twice has NaN as state and wall
+        pressure
         and the verdict "failed".
 
     Raises:
@@ -140,16 +141,14 @@ class _Job:
             def tick(iteration, active, worst, phase=phase, limit=limit):
                 self.say(phase, iteration, limit, f"{active} active, {worst:.1f} decades")
 
-            if last:
-                stop = partial(finished, settings=settings)
-            else:
-                stop = partial(fallen, decades=1.5 if order == 1 else 2.0)
+            stop = partial(finished, settings=settings) if last else partial(fallen, decades=1.5 if order == 1 else 2.0)
             march(ensemble, limit, caution, stop, finish, tick, impulsive=start is None)
             seconds[phase] = seconds.get(phase, 0.0) + time.perf_counter() - began
             start = result
 
     def _way_down(self, level: int) -> tuple[np.ndarray, np.ndarray]:
-        """For `prolong` from `level` to the next finer one: (parent, offset), rows in the finer level's kernel order."""
+        """For `prolong` from `level` to the next finer one: (parent, offset), rows in the finer level's kernel
+        order."""
         coarse, fine = self.levels.meshes[level], self.levels.meshes[level - 1]
         place = np.empty(coarse.cells, dtype=np.int32)
         place[self.topologies[level].order] = np.arange(coarse.cells, dtype=np.int32)
@@ -173,7 +172,8 @@ class _Job:
 
 
 def stages(levels: int, order: int) -> list[tuple[int, int]]:
-    """(level, order) to march through: first order on the coarsest level, then the asked order on all, coarse to fine."""
+    """(level, order) to march through: first order on the coarsest level, then the asked order on all, coarse to
+    fine."""
     last = levels - 1
     begin = [(last, 1)] if order == 2 else []
     return begin + [(level, order) for level in range(last, -1, -1)]
@@ -190,7 +190,7 @@ def judge(history: History, settings: FlowSettings) -> ConvergenceRecord:
     good = not history.failure and converged(history, settings)
     # What still wanders is averaged over the longer window by which it is judged.
     window = force[-settings.window if good else -4 * settings.window :]
-    drop, spread = history.drop(), history.spread(settings.window)
+    drop = history.drop()
     if history.failure:
         verdict, reason = "failed", history.failure
     elif good:

@@ -1,4 +1,5 @@
-"""A mesh as the kernels want it: cells along a space-filling curve, faces by thread chunk, coefficients of gradients."""
+"""A mesh as the kernels want it: cells along a space-filling curve, faces by thread chunk, coefficients of
+gradients."""
 
 from __future__ import annotations
 
@@ -20,7 +21,8 @@ class Topology(NamedTuple):
     Cells are renumbered along a Morton curve: `order[new] = old`. Every cell has a list of entries, one per interior
     face, `start[cell]:start[cell + 1]`: the neighbour `other`, unit normal `normal` out of the cell, area `area`.
     `stencil_*` is the list of the gradient's neighbours with the coefficients of the least-squares gradient.
-    Faces of a chunk (a run of cells owned by one thread) are `chunk_faces[chunk_start[k]:chunk_start[k + 1]]`; a face between two
+    Faces of a chunk (a run of cells owned by one thread) are `chunk_faces[chunk_start[k]:chunk_start[k + 1]]`; a face
+    between two
     chunks stands in both lists and each chunk adds its own side, so that threads never write to the same cell.
     `boundary` rows are walls first (`walls` of them), then far field; `edge_start` lists them by cell.
     Blocks of cells are coloured so that blocks of one colour do not touch: `color_start`, `color_blocks`.

@@ -16,7 +16,8 @@ from spaceplane.flow.fluxes.waves import wave_speeds
 def hllc(rl, ul, vl, wl, pl, rr, ur, vr, wr, pr, nx, ny, nz, gamma, p0):
     """Flux of mass, momentum and energy per unit area through a face with unit normal n.
 
-    States are (density, velocity xyz, pressure); `p0` is taken off the pressure in the momentum flux, which changes nothing
+    States are (density, velocity xyz, pressure); `p0` is taken off the pressure in the momentum flux, which changes
+    nothing
     on closed cells and saves digits.
     """
     real = type(rl)

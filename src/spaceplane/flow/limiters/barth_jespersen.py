@@ -10,6 +10,7 @@ from spaceplane.flow.compiled import inlined
 
 @inlined
 def barth_jespersen(room, step, eps2):
-    """Factor on the gradient: min(1, room/step). `room` and `step` >= 0: room to the neighbours' extreme, step to the face."""
+    """Factor on the gradient: min(1, room/step). `room` and `step` >= 0: room to the neighbours' extreme, step to the
+    face."""
     real = type(room)
     return min(real(1), room / (step + real(1e-20)))
