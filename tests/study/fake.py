@@ -91,6 +91,7 @@ def mode(name: str, eigenvalue: complex, vector: dict[str, float]) -> dict:
     total = sum(value**2 for value in scaled.values())
     return {
         "name": name,
+        "kind": name.lower().replace(" ", "_"),
         "eigenvalue": [eigenvalue.real, eigenvalue.imag],
         "oscillatory": eigenvalue.imag != 0,
         "damping_ratio": -eigenvalue.real / size if eigenvalue.imag else None,

@@ -130,6 +130,8 @@ def test_lateral_oscillation_is_the_one_in_which_sideslip_and_roll_move():
     modes = fake.evaluate({})["flight_points"][0]["modes"]
     assert lateral_oscillation(modes)["name"] == "Dutch roll"
     assert most_unstable(modes)["name"] == "pitch divergence"
+    rolling = [mode | {"kind": "roll_spiral_oscillation"} if mode["kind"] == "dutch_roll" else mode for mode in modes]
+    assert lateral_oscillation(rolling) is None  # sideslip hardly moves
     assert lateral_oscillation([]) is None and most_unstable([]) is None
 
 

@@ -18,8 +18,6 @@ MODE_FIGURES = {
 LEVEL_BELOW_3 = 4
 """Stands for "below 3" where levels are numbers."""
 
-_LATERAL_STATES = ("beta", "p", "r", "sigma")
-
 
 @dataclass(frozen=True)
 class Change:
@@ -148,8 +146,8 @@ def worst_flow(*points: dict) -> str:
 
 
 def lateral_oscillation(modes: list[dict]) -> dict | None:
-    """Return the lateral oscillation (Dutch roll): the fastest oscillation in which sideslip, roll and yaw move."""
-    lateral = [mode for mode in modes if mode["oscillatory"] and _lateral_share(mode) > 0.5]
+    """Return the lateral oscillation, Dutch roll or of roll and sideslip; the fastest where there are two."""
+    lateral = [mode for mode in modes if mode["kind"] in ("dutch_roll", "lateral_oscillation")]
     return max(lateral, key=lambda mode: abs(complex(*mode["eigenvalue"])), default=None)
 
 
@@ -213,9 +211,3 @@ def _worst_levels(verdicts: list[dict]) -> dict[str, int | None]:
         name, level = f"{verdict['criterion']}: {verdict['quantity']}", level_number(verdict["level"])
         worst[name] = max((known for known in (level, worst.get(name)) if known is not None), default=None)
     return worst
-
-
-def _lateral_share(mode: dict) -> float:
-    shares = {state: abs(value or 0.0) for state, value in mode["participation"].items()}
-    total = sum(shares.values())
-    return sum(shares.get(state, 0.0) for state in _LATERAL_STATES) / total if total else 0.0

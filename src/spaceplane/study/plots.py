@@ -102,7 +102,10 @@ def derivative_bars(rows: tuple[Change, ...], mach: float, parameters: tuple[str
         _parameter_panel(ax, chosen, parameter)
     ticks = [symbol(name) + (" (RPD)" if name == "Cm_alpha" else "") for name in DERIVATIVES]
     axes[-1, 0].set_xticks(range(len(DERIVATIVES)), ticks, fontsize=10)
-    axes[len(parameters) // 2, 0].set_ylabel("change, %" if len(parameters) < 3 else "change from the default shape, %")
+    if len(parameters) > 2:
+        figure.supylabel("change from the default shape, %", fontsize=9, color="#444444")
+    else:
+        axes[0, 0].set_ylabel("change, %")
     figure.suptitle(f"Aerodynamic derivatives with shape, Mach {mach:g}", x=0.01, ha="left", fontsize=12, weight="bold")
     if any(row.noise for row in chosen.values()):
         figure.text(
@@ -228,12 +231,12 @@ def lateral_levels(found: SensitivityResult, mach: float) -> Figure:
     for ax, (label, figure_of, limited) in zip(axes, panels, strict=True):
         values = {key: figure_of(mode) for key, mode in shapes.items()}
         _dumbbells(ax, values, figure_of(default) if default else None, label)
-        for limit, levels in _by_limit(limits_of[limited]).items():
+        for row, (limit, levels) in enumerate(_by_limit(limits_of[limited]).items()):
             level = levels[0]
             ax.axvline(limit, color=LEVEL_COLOURS[level], lw=1.2, ls="--", zorder=1)
             text = f"level {level}" if len(levels) == 1 else f"levels {levels[0]}-{levels[-1]}"
             style = {"color": LEVEL_COLOURS[level], "fontsize": 7.5, "ha": "center", "va": "bottom"}
-            ax.text(limit, 1.01, text, transform=ax.get_xaxis_transform(), **style)
+            ax.text(limit, 1.01 + 0.04 * (row % 2), text, transform=ax.get_xaxis_transform(), **style)
     _side_legend(figure)
     figure.suptitle(
         f"Lateral oscillation, Mach {mach:g}; dashed: least values of MIL-F-8785C, class {vehicle_class}, category "
