@@ -33,14 +33,14 @@ def run(fine: bool, progress: Progress) -> list[Record]:
     """Normal force, centre of pressure and axial force of the HB-2 at Mach 1.5, 3 and 6.
 
     Args:
-        fine: 32 wall cells per cylinder diameter instead of 16.
+        fine: 24 wall cells per cylinder diameter instead of 12.
         progress: told what runs.
     """
     progress("Mach 1.5, 3 and 6", 0.0)
     mach = np.repeat(list(MEASURED), 2)
     alpha = np.tile([0.0, STEP], len(MEASURED))
     conditions = FlowConditions(mach, alpha, np.zeros_like(alpha))
-    solution = solve_body(bodies.hb2(), MeshSettings(wall_cell=1.0 / (32 if fine else 16)), conditions)
+    solution = solve_body(bodies.hb2(), MeshSettings(wall_cell=1.0 / (24 if fine else 12)), conditions)
     reference = reference_of(math.pi / 4.0, 1.0, (MOMENT_STATION, 0.0, 0.0))
     values = integrate(solution, reference).sel(part="total")
     records = []

@@ -34,7 +34,8 @@ ALPHAS_DEG = (0.0, 5.0, 10.0, 15.0, 20.0)
 LATERAL_MACH, LATERAL_ALPHA_DEG, LATERAL_STEP_DEG = 2.5, 16.6, 2.0
 IMPACT_MACH, IMPACT_ALPHAS_DEG = 20.0, (20.0, 25.0, 30.0, 35.0, 40.0, 45.0)
 BAND, JUDGED_FROM_DEG = 0.30, 10.0
-ROUNDING = {"CL": 0.005, "CD": 0.005, "Cm": 0.0005}
+ROUNDING = {"CL": 0.005, "CD": 0.005, "Cm": 0.0005, "dCL": 0.0005, "dCD": 0.0005, "dCm": 0.00005}
+"""Half a unit of the last printed digit of the base tables and of the increments."""
 CELL_FINE, CELL_COARSE = 0.25, 0.4
 
 
@@ -120,7 +121,7 @@ def increment_records(clean: xr.Dataset, deflected: xr.Dataset, configuration: C
         for index, (mach, alpha) in enumerate(_grid()):
             published = table.at(mach, alpha, configuration.deflection_deg)
             computed = configuration.share * float(deflected[name][index] - clean[name][index])
-            records.append(_record(f"d{name}, {configuration.name}", mach, alpha, published, computed, name))
+            records.append(_record(f"d{name}, {configuration.name}", mach, alpha, published, computed, f"d{name}"))
     return records
 
 
