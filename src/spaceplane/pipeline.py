@@ -74,7 +74,7 @@ class AnalyseSettings:
     controls: bool = True
     control_step: float = math.radians(10.0)
     steps: DerivativeSteps = field(default_factory=DerivativeSteps)
-    mesh: MeshSettings = field(default_factory=lambda: MeshSettings(wall_cell=0.2))
+    mesh: MeshSettings = field(default_factory=lambda: MeshSettings(wall_cell=0.25))
     flow: FlowSettings = field(default_factory=FlowSettings)
     form: str = "rigid-body"
     vehicle_class: str = "III"
