@@ -292,21 +292,22 @@ def horus_of_unit(unit: str) -> Callable[[], str]:
 
 
 def trust() -> str:
-    """One row per validation case and quantity: how many rows lie inside the band, and the typical deviation."""
+    """One row per validation case and quantity: the typical deviation, and how many rows lie inside the band."""
     from statistics import median
 
     from spaceplane.validation import read
 
+    cases = ("cones", "sphere", "hb2", "horus")
     rows = []
-    for case in ("cones", "sphere", "hb2", "horus"):
-        records = [record for record in read(validation_path(case)) if record.unit != "m"]
-        for quantity in dict.fromkeys(record.quantity for record in records):
-            own = [record for record in records if record.quantity == quantity]
+    for case in (case for case in cases if validation_path(case).exists()):
+        records = [record for record in read(validation_path(case)) if record.unit != "m" and record.quantity[0] != "d"]
+        for quantity, kind in dict.fromkeys((record.quantity, record.kind) for record in records):
+            own = [record for record in records if (record.quantity, record.kind) == (quantity, kind)]
             gaps = [abs(record.deviation) for record in own if record.deviation is not None]
-            scale, unit = (100.0, " %") if own[0].kind == "relative" else (1.0, "")
+            scale, unit = (100.0, " %") if kind == "relative" else (1.0, "")
             typical = "-" if not gaps else f"{scale * median(gaps):.2g}{unit}"
-            band = f"{scale * own[0].band:.3g}{unit}"
-            rows.append((case, quantity, typical, band, f"{sum(record.within for record in own)} of {len(own)}"))
+            inside = f"{sum(record.within for record in own)} of {len(own)}"
+            rows.append((case, quantity, typical, f"{scale * own[0].band:.3g}{unit}", inside))
     return table(("case", "quantity", "median deviation", "band", "inside"), rows, "llrrr")
 
 
