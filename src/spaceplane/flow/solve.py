@@ -180,7 +180,7 @@ def stages(levels: int, order: int) -> list[tuple[int, int]]:
 
 
 def fallen(history: History, decades: float) -> bool:
-    """Whether the residual of a coarse level has fallen far enough to go on to the next."""
+    """Whether the residual of a coarse level has fallen far enough, in decades, to go on to the next."""
     return history.drop() >= decades
 
 
