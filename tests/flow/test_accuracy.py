@@ -65,7 +65,10 @@ def test_cone_surface_pressure_matches_taylor_maccoll(mach, angle_deg, shock_deg
     angle = np.radians(angle_deg)
     mesh = cone(16, 24, 12, angle, np.radians(shock_deg + 8.0))
     solution = solve(mesh, FlowConditions(np.array([mach]), np.zeros(1), np.zeros(1)), FlowSettings(coarse_levels=0))
-    assert solution.records[0].good
+    # The start on the same mesh leaves little for the residual to fall; the forces must stand all the same.
+    record = solution.records[0]
+    assert record.verdict != "failed"
+    assert record.window_spread.max() < 1e-3 * np.linalg.norm(record.window_mean)
     c = mesh.wall_center
     radius = np.hypot(c[:, 1], c[:, 2])
     surface = (radius < 1.001 * c[:, 0] * np.tan(angle)) & (c[:, 1] > 1e-6) & (c[:, 2] > 1e-6) & (c[:, 0] > 0.5)
@@ -74,26 +77,27 @@ def test_cone_surface_pressure_matches_taylor_maccoll(mach, angle_deg, shock_deg
 
 
 @pytest.fixture(scope="module")
-def round_body():
-    mesh = sphere(40, 16, far=8.0)
-    mach = np.array([0.5, 1.5, 2.0, 3.0, 5.0, 10.0])
-    return solve(mesh, FlowConditions(mach, np.zeros(6), np.zeros(6)), FlowSettings())
+def supersonic_sphere():
+    mach = np.array([1.5, 2.0, 3.0, 5.0, 10.0])
+    return solve(sphere(32, 12, far=3.2), FlowConditions(mach, 0 * mach, 0 * mach), FlowSettings())
 
 
-def test_sphere_stagnation_pressure(round_body):
-    found = diagnose(round_body)
-    exact = stagnation_cp(round_body.conditions.mach)
-    np.testing.assert_allclose(exact[1:], [1.5322, 1.6573, 1.7557, 1.8088, 1.8317], atol=1e-4)
+def test_sphere_stagnation_pressure(supersonic_sphere):
+    found = diagnose(supersonic_sphere)
+    exact = stagnation_cp(supersonic_sphere.conditions.mach)
+    np.testing.assert_allclose(exact, [1.5322, 1.6573, 1.7557, 1.8088, 1.8317], atol=1e-4)
     np.testing.assert_allclose(found.cp_max, exact, rtol=0.03)
 
 
-def test_subsonic_sphere_has_next_to_no_drag(round_body):
-    force = (round_body.wall_cp()[:, :1].astype(float) * round_body.mesh.wall_area).sum(axis=0) / np.pi
-    assert round_body.records[0].good
+def test_supersonic_sphere_converges(supersonic_sphere):
+    records = supersonic_sphere.records
+    assert [r.verdict for r in records] == ["converged"] * 5, [r.reason for r in records]
+    assert diagnose(supersonic_sphere).enthalpy_error.max() < 0.02
+
+
+def test_subsonic_sphere_has_next_to_no_drag():
+    solution = solve(sphere(40, 16, far=8.0), FlowConditions(np.array([0.5]), np.zeros(1), np.zeros(1)), FlowSettings())
+    force = (solution.wall_cp().astype(float) * solution.mesh.wall_area).sum(axis=0) / np.pi
+    assert solution.records[0].good
     assert abs(force[0]) < 0.02
     assert np.abs(force[1:]).max() < 1e-3
-
-
-def test_sphere_conditions_converge(round_body):
-    assert [r.verdict for r in round_body.records] == ["converged"] * 6, [r.reason for r in round_body.records]
-    assert diagnose(round_body).enthalpy_error.max() < 0.1

@@ -50,14 +50,24 @@ def starting_cfl(mach: np.ndarray, caution: Caution, impulsive: bool) -> np.ndar
     return first + np.clip((mach - 2.0) / 3.0, 0.0, 1.0) * (lowest - first)
 
 
-def feedback(cfl: np.ndarray, before: np.ndarray, now: np.ndarray, limited: np.ndarray, caution: Caution) -> np.ndarray:
-    """[lane] next CFL number: grows while the residual behaves, halves when it jumps or many cells had to be held
-    back."""
+def highest_cfl(mach: np.ndarray, caution: Caution) -> np.ndarray:
+    """[lane] largest CFL number: `cfl_max`, falling to 20 between Mach 2 and 5, where larger ones gain nothing."""
+    return np.minimum(caution.cfl_max, 20.0 + np.clip((5.0 - mach) / 3.0, 0.0, 1.0) * max(caution.cfl_max - 20.0, 0.0))
+
+
+def feedback(
+    cfl: np.ndarray, best: np.ndarray, before: np.ndarray, now: np.ndarray, limited: np.ndarray, caution: Caution
+) -> np.ndarray:
+    """[lane] next CFL number: grows while the residual behaves.
+
+    It falls when the residual jumps, has risen far above its best, or when many cells had to be held back.
+    """
     grown = now / np.maximum(before, 1e-300)
     factor = np.where(grown < 1.2, caution.growth, 1.0)
     factor = np.where(limited > 3e-2, 1.0, factor)
+    factor = np.where(now > 4.0 * best, 0.8, factor)
     factor = np.where((grown > 2.0) | (limited > 0.1), 0.5, factor)
-    return np.clip(cfl * factor, min(0.5, caution.cfl_start), caution.cfl_max)
+    return np.maximum(cfl * factor, min(0.5, caution.cfl_start))
 
 
 def converged(history: History, settings: FlowSettings) -> bool:
@@ -113,7 +123,8 @@ def march(
     """
     histories = {int(c): History() for c in ensemble.lanes[: ensemble.count]}
     cfl = starting_cfl(ensemble.conditions.mach[ensemble.lanes], caution, impulsive)
-    before = None
+    before = best = None
+    ceiling = highest_cfl(ensemble.conditions.mach[ensemble.lanes], caution)
     limited = np.zeros(len(ensemble.lanes))
     for iteration in range(iterations + 1):
         norms = ensemble.evaluate()
@@ -137,14 +148,15 @@ def march(
             break
         calm = np.ones(len(norms), dtype=bool)
         if before is not None:
-            cfl = feedback(cfl, before, norms, limited, caution)
-            calm = norms < 1.5 * before
+            cfl = np.minimum(feedback(cfl, best, before, norms, limited, caution), ceiling)
+            calm = (norms < 1.5 * before) & (norms < 3.0 * best)
+        best = norms if best is None else np.minimum(best, norms)
         before = norms
         if leaving:
             source = np.concatenate([staying, np.full(len(ensemble.lanes) - len(staying), staying[-1])])
             ensemble.keep(staying)
             source = source[: len(ensemble.lanes)]
-            cfl, before, calm = cfl[source], before[source], calm[source]
+            cfl, before, best, calm, ceiling = (x[source] for x in (cfl, before, best, calm, ceiling))
             ensemble.evaluate()
         ensemble.correct(cfl)
         limited = ensemble.apply(caution.largest, calm)
