@@ -11,6 +11,10 @@ from spaceplane.flow.ensemble import Ensemble
 from spaceplane.flow.settings import FlowSettings
 
 
+ACCELERATED_BELOW_MACH = 2.75
+"""Anderson acceleration drives blunt-base flows apart at Mach 3 and more; there plain iterations converge."""
+
+
 @dataclass
 class History:
     """What one condition did on one level."""
@@ -126,6 +130,7 @@ def march(
     before = best = None
     ceiling = highest_cfl(ensemble.conditions.mach[ensemble.lanes], caution)
     limited = np.zeros(len(ensemble.lanes))
+    trusted = ensemble.conditions.mach[ensemble.lanes] < ACCELERATED_BELOW_MACH
     for iteration in range(iterations + 1):
         norms = ensemble.evaluate()
         forces = ensemble.forces()
@@ -149,14 +154,16 @@ def march(
         calm = np.ones(len(norms), dtype=bool)
         if before is not None:
             cfl = np.minimum(feedback(cfl, best, before, norms, limited, caution), ceiling)
-            calm = (norms < 1.5 * before) & (norms < 3.0 * best)
+            # Once the residual has risen well above its best, the condition goes on without acceleration.
+            trusted &= norms < 2.0 * best
+            calm = trusted & (norms < 1.5 * before)
         best = norms if best is None else np.minimum(best, norms)
         before = norms
         if leaving:
             source = np.concatenate([staying, np.full(len(ensemble.lanes) - len(staying), staying[-1])])
             ensemble.keep(staying)
             source = source[: len(ensemble.lanes)]
-            cfl, before, best, calm, ceiling = (x[source] for x in (cfl, before, best, calm, ceiling))
+            cfl, before, best, calm, ceiling, trusted = (x[source] for x in (cfl, before, best, calm, ceiling, trusted))
             ensemble.evaluate()
         ensemble.correct(cfl)
         limited = ensemble.apply(caution.largest, calm)

@@ -49,7 +49,7 @@ class FlowSettings:
     order: int = 2
     flux: str = "blend"
     limiter: str = "venkatakrishnan"
-    limiter_constant: float = 5.0
+    limiter_constant: float = 1.0
     low_mach: float = 0.05
     wall_stiffness: float = 0.0
     cfl_start: float = 25.0

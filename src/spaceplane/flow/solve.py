@@ -67,7 +67,7 @@ def solve(
     retry = np.array([c for c in range(len(conditions)) if job.worth_retry(c)], dtype=int)
     if len(retry):
         say("retry", 0, len(retry), f"{len(retry)} conditions once more, carefully")
-        job.settings = replace(settings, limiter_constant=min(1.0, settings.limiter_constant))
+        job.settings = replace(settings, limiter_constant=0.3 * settings.limiter_constant)
         for which in np.array_split(retry, -(-len(retry) // WIDTH)):
             job.run(which, Caution(min(5.0, settings.cfl_start), min(25.0, settings.cfl_max), 1.2, 0.25), seconds)
     if cold:
