@@ -10,7 +10,6 @@ import numpy as np
 from spaceplane.flow.ensemble import Ensemble
 from spaceplane.flow.settings import FlowSettings
 
-
 ACCELERATED_BELOW_MACH = 2.75
 """Anderson acceleration drives blunt-base flows apart at Mach 3 and more; there plain iterations converge."""
 
