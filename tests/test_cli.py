@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import json
 import os
 import subprocess
@@ -505,7 +506,11 @@ def test_interrupt_from_outside_is_one_line_and_130(tmp_path):
     body = wedge(tmp_path / "w.stl")
     arguments = ["flow", str(body), "--mach", "1.5,2,2.5,3", *FLOW, "--cell", "0.03"]
     command = [sys.executable, "-m", "spaceplane.cli", *arguments]
-    with subprocess.Popen(command, stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as process:
+    # A shell's background job ignores SIGINT and hands that down; the child must not inherit it.
+    restore = functools.partial(signal.signal, signal.SIGINT, signal.SIG_DFL)
+    with subprocess.Popen(
+        command, stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True, preexec_fn=restore
+    ) as process:
         first = process.stderr.readline()  # the first line of progress: now it computes
         process.send_signal(signal.SIGINT)
         out, err = process.communicate(timeout=200)

@@ -162,7 +162,15 @@ def _start(store: Path, log: Path, sleep_s: float, workers: int) -> subprocess.P
     script.write_text(_STUDY_PROCESS.format(here=str(HERE)))
     command = [sys.executable, str(script), str(store), str(log), str(workers)]
     environment = os.environ | {"FAKE_SLEEP_S": str(sleep_s)}
-    return subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    # A shell's background job ignores SIGINT and hands that down; the child must not inherit it.
+    return subprocess.Popen(
+        command,
+        env=environment,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
+    )
 
 
 def _wait_for(log: Path, count: int) -> None:
