@@ -25,7 +25,7 @@ from spaceplane.dynamics.modes import Mode, identify
 from spaceplane.dynamics.statespace import StateSpace
 from spaceplane.environment.constants import STANDARD_GRAVITY
 from spaceplane.environment.validity import Validity, assess_validity
-from spaceplane.errors import InputError
+from spaceplane.errors import InputError, unknown_name
 from spaceplane.flow.settings import FlowSettings
 from spaceplane.flow.solution import FlowConditions
 from spaceplane.mesh.settings import MeshSettings, RefinementBox
@@ -35,7 +35,6 @@ from spaceplane.report import record
 from spaceplane.report.output import check_output, write
 from spaceplane.vehicle.controls import CONTROLS, ControlDeflections
 from spaceplane.vehicle.presets import Vehicle
-from spaceplane.vehicle.shape import unknown_name
 
 Progress = Callable[[str, int, int, str], None]
 """Called with (phase, done, total, text); calls of the solver have the name of the body before the phase."""

@@ -113,10 +113,10 @@ def test_model_keys_act(tmp_path):
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
-        ("Cm_alpha = 0.00071", "Cm_alfa = 0.00071", "Cm_alfa: unknown; did you mean Cm_alpha"),
+        ("Cm_alpha = 0.00071", "Cm_alfa = 0.00071", "unknown key 'Cm_alfa': did you mean 'Cm_alpha'"),
         ("Cm_alpha = 0.00071", "", "Cm_alpha: missing"),
-        ("mass_kg", "mass", "mass: unknown; did you mean mass_kg"),
-        ("[vehicle]", "[vehicel]", "vehicel.*did you mean vehicle"),
+        ("mass_kg", "mass", "unknown key 'mass': did you mean 'mass_kg'"),
+        ("[vehicle]", "[vehicel]", "unknown table 'vehicel': did you mean 'vehicle'"),
         ("mach = 2.5", "mach = 0.0", "mach = 0"),
         ("mach = 2.5", "mach = -1.0", "mach = -1"),
         ("mach = 2.5", "mach = nan", "mach = nan: must be a finite number"),

@@ -194,7 +194,7 @@ def test_fine_parts_have_half_sized_cells():
     assert np.isclose(size[mesh.piece_part == 0], 0.2).mean() > 0.3
     check_body(mesh, surface)
     check_shape(mesh)
-    with pytest.raises(InputError, match="did you mean wing_left"):
+    with pytest.raises(InputError, match="did you mean 'wing_left'"):
         generate(surface, MeshSettings(fine_parts=("wing_lefd",)))
 
 

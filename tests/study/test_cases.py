@@ -43,7 +43,7 @@ def test_file_and_changes_are_taken(tmp_path):
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("machs: [2]", "machs: unknown field; did you mean mach?"),
+        ("machs: [2]", "unknown field 'machs': did you mean 'mach'?"),
         ("mach: [0]", "above 0"),
         ("mach: [fast]", "valid number"),
         ("mach: [2, 2]", "each Mach number once"),
@@ -68,7 +68,7 @@ def test_missing_file(tmp_path):
 @pytest.mark.parametrize(
     ("parameters", "message"),
     [
-        ({"wing_widht_m": ()}, "did you mean wing_width_m"),
+        ({"wing_widht_m": ()}, "did you mean 'wing_width_m'"),
         ({"wing_width_m": (9.0,)}, "wing_width_m: 9; allowed: 2.8 to 3.9 m"),
         ({"wing_width_m": (3.1,)}, "is the default"),
     ],

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import math
 import tomllib
 from collections.abc import Mapping
@@ -19,7 +18,7 @@ from spaceplane.dynamics.derivatives import (
 )
 from spaceplane.dynamics.flightpoint import FlightPoint, flight_point
 from spaceplane.dynamics.linearise import FORMS
-from spaceplane.errors import InputError
+from spaceplane.errors import InputError, unknown_name
 from spaceplane.vehicle.properties import MassProperties, ReferenceLengths
 
 UNITS = ("per_degree", "per_radian")
@@ -171,9 +170,8 @@ def _numbers(
 def _known(table: str, content: Mapping[str, object], allowed: tuple[str, ...]) -> None:
     for key in content:
         if key not in allowed:
-            nearest = difflib.get_close_matches(key, allowed, n=1, cutoff=0.0)
-            where = f"[{table}] {key}" if table else f"[{key}]"
-            raise InputError(f"{where}: unknown; did you mean {nearest[0]}?")
+            message = unknown_name("key" if table else "table", key, allowed)
+            raise InputError(f"[{table}] {message}" if table else message)
 
 
 def _one_line(error: Exception) -> str:

@@ -6,13 +6,11 @@ connects become one control volume, so that the coarser wall is as exact as the 
 
 from __future__ import annotations
 
-import difflib
-
 import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
-from spaceplane.errors import InputError
+from spaceplane.errors import InputError, unknown_name
 from spaceplane.mesh.assembly import Assembly
 from spaceplane.mesh.cutcells import CutCells
 from spaceplane.mesh.octree import Window
@@ -33,9 +31,7 @@ def fine_parts(names: tuple[str, ...], settings: MeshSettings) -> np.ndarray:
     for wanted in settings.fine_parts:
         found = [n for n, name in enumerate(names) if name == wanted or name.startswith(wanted + "_")]
         if not found:
-            near = difflib.get_close_matches(wanted, names, 1)
-            hint = f", did you mean {near[0]}?" if near else ""
-            raise InputError(f"fine_parts: no part {wanted!r}{hint}; parts: {', '.join(names)}")
+            raise InputError("fine_parts: " + unknown_name("part", wanted, names))
         fine[found] = True
     return fine
 

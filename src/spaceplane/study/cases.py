@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import difflib
 from pathlib import Path
 from typing import Any
 
 import yaml
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
-from spaceplane.errors import InputError
+from spaceplane.errors import InputError, unknown_name
 
 BASE_PARAMETERS = (
     "fuselage_width_m",
@@ -112,12 +111,6 @@ def load_study(path: Path | str | None = None, **changes: object) -> Sensitivity
     return study
 
 
-def nearest(name: str, allowed: tuple[str, ...] | list[str]) -> str:
-    """Return '; did you mean X?' for the nearest allowed name, or the list of them."""
-    close = difflib.get_close_matches(name, list(allowed), n=1)
-    return f"did you mean {close[0]}?" if close else f"allowed: {', '.join(allowed)}"
-
-
 def _read(path: Path) -> dict:
     try:
         text = path.read_text(encoding="utf-8")
@@ -141,7 +134,7 @@ def _first(error: ValidationError) -> str:
     first = error.errors()[0]
     name = ".".join(str(part) for part in first["loc"])
     if first["type"] == "extra_forbidden":
-        return f"{name}: unknown field; {nearest(name, list(SensitivityStudy.model_fields))}"
+        return unknown_name("field", name, SensitivityStudy.model_fields)
     message = first["msg"].removeprefix("Value error, ")
     shown = str(first["input"])
     return f"{name}: {shown if len(shown) < 60 else shown[:57] + '...'}; {message[0].lower()}{message[1:]}"

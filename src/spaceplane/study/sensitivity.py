@@ -10,9 +10,9 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from spaceplane import __version__
-from spaceplane.errors import InputError
+from spaceplane.errors import InputError, unknown_name
 from spaceplane.study import thesis
-from spaceplane.study.cases import SensitivityStudy, nearest
+from spaceplane.study.cases import SensitivityStudy
 from spaceplane.study.changes import Change, changes, mesh_noise
 from spaceplane.study.execute import execute
 from spaceplane.study.keys import code_fingerprint
@@ -153,7 +153,7 @@ def plan(study: SensitivityStudy) -> tuple[Variation, ...]:
     variations = []
     for name, values in study.parameters.items():
         if name not in ranges:
-            raise InputError(f"parameters: {name} is unknown; {nearest(name, list(ranges))}")
+            raise InputError("parameters: " + unknown_name("shape parameter", name, ranges))
         limits = ranges[name]
         for value in values or (limits.lower, limits.upper):
             if not study.allow_outside_limits and not limits.lower <= value <= limits.upper:

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Callable, Sequence
 from importlib import import_module
 
-from spaceplane.errors import InputError
+from spaceplane.errors import InputError, unknown_name
 from spaceplane.validation.records import Record
 
 Progress = Callable[[str, float], None]
@@ -36,9 +35,7 @@ def run(cases: Sequence[str] = (), progress: Progress | None = None, fine: bool 
     names = list(cases) or list(CASES)
     for name in names:
         if name not in CASES:
-            near = difflib.get_close_matches(name, CASES, n=1)
-            hint = f"; did you mean {near[0]!r}?" if near else ""
-            raise InputError(f"case = {name!r}: unknown{hint} Known cases: {', '.join(CASES)}")
+            raise InputError(unknown_name("case", name, CASES))
     tell = progress or (lambda line, fraction: None)
     records: list[Record] = []
     for index, name in enumerate(names):

@@ -6,8 +6,8 @@ import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 
-from spaceplane.errors import InputError
-from spaceplane.vehicle.shape import finite_number, unknown_name
+from spaceplane.errors import InputError, unknown_name
+from spaceplane.vehicle.shape import finite_number
 
 CONTROL_LIMITS_DEG: dict[str, tuple[float, float]] = {
     "elevon_left": (-40.0, 40.0),

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
-from spaceplane.errors import InputError
+from spaceplane.errors import InputError, unknown_name
 from spaceplane.vehicle.properties import (
     HORUS_MASS,
     HORUS_REFERENCE,
@@ -18,7 +18,7 @@ from spaceplane.vehicle.properties import (
     ReferenceLengths,
     scaled_reference,
 )
-from spaceplane.vehicle.shape import ShapeParameters, finite_number, unknown_name
+from spaceplane.vehicle.shape import ShapeParameters, finite_number
 
 OPTIMISED_SHAPE: dict[str, float] = {
     "winglet_length_m": 4.0,

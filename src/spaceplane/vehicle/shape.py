@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import difflib
 import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, fields
 from numbers import Real
 
-from spaceplane.errors import InputError
+from spaceplane.errors import InputError, unknown_name
 
 TABLE_5_1 = "thesis, Table 5.1"
 OPEN = "not given in the thesis; chosen here"
@@ -172,12 +171,6 @@ def parameter_info(name: str) -> ParameterInfo:
     if name in _BY_NAME:
         return _BY_NAME[name]
     raise InputError(unknown_name("shape parameter", name, tuple(_BY_NAME)))
-
-
-def unknown_name(kind: str, name: object, valid: tuple[str, ...]) -> str:
-    """The message for a name that does not exist, with the nearest that does."""
-    near = difflib.get_close_matches(str(name), valid, n=1, cutoff=0.4)
-    return f"unknown {kind} '{name}'" + (f": did you mean '{near[0]}'?" if near else f": valid are {', '.join(valid)}")
 
 
 def finite_number(name: str, value: object) -> float:
