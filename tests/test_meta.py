@@ -22,6 +22,7 @@ TREES = {name: ast.parse(path.read_text(encoding="utf-8")) for name, path in MOD
 # A stage knows only the ones before it. `environment` knows nobody but the constants and may be known by any.
 ORDER = (
     "errors",
+    "plain",
     "environment",
     "vehicle",
     "mesh",
@@ -29,6 +30,7 @@ ORDER = (
     "aero",
     "dynamics",
     "qualities",
+    "analysis",
     "report",
     "pipeline",
     "study",

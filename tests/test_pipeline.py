@@ -237,7 +237,13 @@ def test_settings_survive_a_round_trip_through_plain_values():
             "deflections": {"body_flap": 0},
             "control_step_deg": 4,
             "steps": {"alpha_deg": 0.5, "two_step_sizes": True},
-            "mesh": {"wall_cell": 0.3, "target_cells": None},
+            "mesh": {
+                "wall_cell": 0.3,
+                "target_cells": None,
+                "domain": [[-50, -50, -50], [100, 50, 50]],
+                "boxes": [{"lower": [0, -1, -1], "upper": [5, 1, 1], "cell": 0.2}],
+                "fine_parts": ["wing"],
+            },
             "flow": {"precision": "double"},
         }
     )
@@ -255,6 +261,9 @@ def test_settings_survive_a_round_trip_through_plain_values():
         ({"mch": [2]}, "did you mean 'mach'"),
         ({"mesh": {"wall_cel": 1.0}}, r"mesh\.wall_cel"),
         ({"mesh": 3}, "mesh"),
+        ({"mesh": {"domain": [[0, 0, 0], [1, 1]]}}, r"mesh\.domain.*upper corner"),
+        ({"mesh": {"boxes": [{"lower": [0, 0, 0]}]}}, r"mesh\.boxes.*upper"),
+        ({"mesh": {"fine_parts": "wing"}}, r"mesh\.fine_parts"),
         ({"mach": ["fast"]}, "mach"),
         ({"mach": [-1.0]}, "mach = -1"),
         ({"mach": []}, "mach"),

@@ -6,13 +6,10 @@ import json
 import os
 import tempfile
 from pathlib import Path
-from typing import TYPE_CHECKING
 
+from spaceplane.analysis.found import Analysis
 from spaceplane.errors import InputError
 from spaceplane.report import record
-
-if TYPE_CHECKING:
-    from spaceplane.pipeline import Analysis
 
 FILES = ("result.json", "aero.nc", "geometry.stl", "surface.vtp", "report.html")
 

@@ -3,10 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import asdict, is_dataclass
 from datetime import UTC, datetime
-from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import xarray as xr
@@ -14,17 +11,17 @@ import xarray as xr
 from spaceplane import __version__
 from spaceplane.aero.conditions import ConditionPlan
 from spaceplane.aero.integrate import COEFFICIENTS, PRESSURES, TOTAL, wetted_area
+from spaceplane.analysis.flight import PointAnalysis
+from spaceplane.analysis.found import Analysis
 from spaceplane.dynamics.modes import to_record as mode_record
 from spaceplane.flow.solution import ConvergenceRecord
+from spaceplane.plain import plain
 from spaceplane.qualities.assess import to_record as verdict_record
 from spaceplane.report.read import SCHEMA, SCHEMA_VERSION
 from spaceplane.vehicle.controls import ControlDeflections
+from spaceplane.vehicle.presets import Vehicle
 from spaceplane.vehicle.shape import PARAMETERS
 from spaceplane.vehicle.surface import Surface
-
-if TYPE_CHECKING:
-    from spaceplane.pipeline import Analysis, PointAnalysis
-    from spaceplane.vehicle.presets import Vehicle
 
 BY_PART = ("CL", "CD", "CY", "Cl", "Cm", "Cn")
 
@@ -45,27 +42,6 @@ def result(analysis: Analysis) -> dict:
             "warnings": list(analysis.warnings),
         }
     )
-
-
-def plain(value: Any) -> Any:
-    """Anything as JSON values: arrays as lists, records as dicts, numbers that are not finite as None."""
-    if is_dataclass(value) and not isinstance(value, type):
-        return plain(asdict(value))
-    if isinstance(value, Mapping):
-        return {str(key): plain(item) for key, item in value.items()}
-    if isinstance(value, np.ndarray):
-        return plain(value.tolist())
-    if isinstance(value, list | tuple):
-        return [plain(item) for item in value]
-    if isinstance(value, bool | np.bool_):
-        return bool(value)
-    if isinstance(value, int | np.integer):
-        return int(value)
-    if isinstance(value, float | np.floating):
-        return float(value) if math.isfinite(value) else None
-    if value is None or isinstance(value, str):
-        return value
-    raise TypeError(f"no JSON form for {type(value).__name__}")
 
 
 def _degrees(angle: float) -> float:

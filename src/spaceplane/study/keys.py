@@ -24,7 +24,7 @@ NUMERICAL_SOURCES = (
     "environment",
     "dynamics",
     "qualities",
-    "pipeline",
+    "analysis",
     "pipeline.py",
 )
 """Packages and modules whose code moves a result. Reports, plots and the command line are left out on purpose."""
