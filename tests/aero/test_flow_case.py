@@ -1,14 +1,13 @@
-"""One small body through mesh and solver, as `spaceplane flow` and polars ask for it."""
+"""One small body through mesh and solver, as `spaceplane flow` asks for it."""
 
 import json
 import math
 from dataclasses import replace
 
-import numpy as np
 import pytest
 
 from spaceplane.aero import flow_case
-from spaceplane.aero.flow_case import polar, records, run_flow
+from spaceplane.aero.flow_case import records, run_flow
 from spaceplane.aero.integrate import integrate
 from spaceplane.errors import InputError
 from spaceplane.flow.settings import FlowSettings
@@ -64,27 +63,6 @@ def test_failed_conditions_have_no_values(case):
     assert failed["CL"] is None and failed["Cp_max"] is None and failed["residual_drop"] is None
     assert (failed["converged"], failed["reason"]) == (False, "not a number")
     assert good["CD"] == pytest.approx(case.records[0]["CD"])
-
-
-def test_polar_arranges_the_same_numbers_over_mach_and_alpha(case, monkeypatch):
-    monkeypatch.setattr(flow_case, "generate", lambda body, settings: case.mesh)
-
-    def solve(mesh, conditions, settings, progress):
-        assert (conditions.beta == 0).all()
-        order = [0, 2]
-        return replace(
-            case.solution,
-            conditions=conditions,
-            state=case.solution.state[..., order],
-            wall_pressure=case.solution.wall_pressure[:, order],
-            records=tuple(case.solution.records[i] for i in order),
-        )
-
-    monkeypatch.setattr(flow_case, "solve", solve)
-    table = polar(cone(HALF_ANGLE), [3.0], [0.0, ALPHA], REFERENCE, MESH, FlowSettings())
-    assert table.sizes == {"mach": 1, "alpha": 2}
-    np.testing.assert_allclose(table.CL.sel(mach=3.0), [case.records[0]["CL"], case.records[2]["CL"]])
-    assert table.CL.attrs["positive"] == "up"
 
 
 def test_bad_conditions_are_refused_before_meshing(monkeypatch):

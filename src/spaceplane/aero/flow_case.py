@@ -1,4 +1,4 @@
-"""Any body in any list of free streams: coefficients as plain records and as polars."""
+"""Any body in any list of free streams: coefficients as plain records."""
 
 from __future__ import annotations
 
@@ -102,32 +102,6 @@ def records(solution: Solution, coefficients: xr.Dataset) -> list[dict]:
             }
         )
     return result
-
-
-def polar(
-    body: Surface,
-    machs: Sequence[float],
-    alphas: Sequence[float],
-    reference: Reference,
-    mesh_settings: MeshSettings,
-    flow_settings: FlowSettings,
-    progress: Progress | None = None,
-) -> xr.Dataset:
-    """Total coefficients over Mach number and angle of attack (rad) of one body in one ensemble.
-
-    Returns:
-        Dataset with dims (mach, alpha): COEFFICIENTS, their `_spread`, and `verdict`. Failed conditions are NaN.
-    """
-    case = run_flow(body, machs, alphas, [0.0], reference, mesh_settings, flow_settings, progress)
-    totals = case.coefficients.sel(part=TOTAL)
-    shape = (len(machs), len(alphas))
-    variables = {
-        name: (("mach", "alpha"), variable.values.reshape(shape), variable.attrs)
-        for name, variable in totals.data_vars.items()
-    }
-    variables["verdict"] = (("mach", "alpha"), totals.verdict.values.reshape(shape))
-    coordinates = {"mach": ("mach", list(machs), {"units": "1"}), "alpha": ("alpha", list(alphas), {"units": "rad"})}
-    return xr.Dataset(variables, coordinates, totals.attrs)
 
 
 def total_seconds(solution: Solution) -> float:
