@@ -43,6 +43,15 @@ def test_log_says_at_once_when_kernels_are_compiled_and_nothing_for_short_work(c
     assert "compiling kernels" in err
 
 
+def test_log_says_each_compilation_of_a_body(capfd, monkeypatch):
+    monkeypatch.setattr("sys.stderr.isatty", lambda: False, raising=False)
+    with progress.progress_bar(2) as tell:
+        tell("base: mesh", 0, 1, "")
+        tell("base: compile mesh", 0, 1, "compiling mesh kernels (once, ~15 s)")
+        tell("base: compile", 0, 1, "compiling kernels (once, ~20 s)")
+    assert [line.count("compiling") for line in capfd.readouterr().err.splitlines()] == [1, 1]
+
+
 def test_log_repeats_a_stage_only_now_and_then(capfd, monkeypatch):
     clock = iter([0.0, 5.0, 6.0, 7.0, 16.0, 17.0])
     monkeypatch.setattr(progress.time, "monotonic", lambda: next(clock))

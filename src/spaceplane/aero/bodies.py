@@ -98,7 +98,7 @@ def solve_vehicle(
     surface = build(vehicle.shape, deflections)
     built = time.perf_counter()
     say("mesh", 0, 1, "")
-    mesh = generate(surface, mesh_settings)
+    mesh = generate(surface, mesh_settings, say)
     meshed = time.perf_counter()
     solution = solve(mesh, conditions, flow_settings, say)
     seconds = {"geometry": built - began, "mesh": meshed - built, "flow": time.perf_counter() - meshed}

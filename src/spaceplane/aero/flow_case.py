@@ -67,7 +67,7 @@ def run_flow(
     conditions = product(list(machs), list(alphas), list(betas))
     if progress:
         progress("mesh", 0, 1, "")
-    mesh = generate(body, mesh_settings)
+    mesh = generate(body, mesh_settings, progress)
     solution = solve(mesh, conditions, flow_settings, progress)
     coefficients = integrate(solution, reference)
     return FlowCase(records(solution, coefficients), coefficients, mesh, solution)

@@ -64,6 +64,7 @@ def _read(first: Path, second: Path) -> dict:
 
 def _computed(folder: Path, cells: str | None, workers: int) -> dict:
     settings = {} if cells is None else {"mesh": {"target_cells": round(positive("--cells", cells, "cells"))}}
+    from spaceplane.mesh.generate import compile_kernels
     from spaceplane.study.compare import default_against_optimised
 
     with progress_bar() as tell:
@@ -71,4 +72,5 @@ def _computed(folder: Path, cells: str | None, workers: int) -> dict:
         def on_change(p) -> None:
             tell(f"{p.done} of {p.total} shapes: {', '.join(p.running)}", p.fraction)
 
+        compile_kernels(tell)  # here and once, not in every worker
         return default_against_optimised(folder / "store.sqlite", on_change, workers, settings)

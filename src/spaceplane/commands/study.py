@@ -53,6 +53,7 @@ def sensitivity(
     store_path = store or out / "store.sqlite"
     if not resume and store_path.exists():
         raise InputError(f"--no-resume: {store_path} exists; remove it or name another --store")
+    from spaceplane.mesh.generate import compile_kernels
     from spaceplane.study import sensitivity as study
     from spaceplane.study.cases import load_study
 
@@ -63,6 +64,7 @@ def sensitivity(
             left = "" if p.remaining_s is None else f", about {p.remaining_s / 60:.0f} min left"
             tell(f"{p.done} of {p.total} shapes ({p.reused} from the store){left}", p.fraction)
 
+        compile_kernels(tell)  # here and once, not in every worker
         found = study.run(asked, store_path, out, on_change, workers, plots=plots)
     if json_file is not None:
         import json

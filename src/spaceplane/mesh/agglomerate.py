@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
+
+from spaceplane.mesh.compiled import kernel
 
 
 def merge_small(volume: np.ndarray, limit: np.ndarray, faces: np.ndarray, area: np.ndarray) -> np.ndarray:
@@ -33,7 +34,7 @@ def merge_small(volume: np.ndarray, limit: np.ndarray, faces: np.ndarray, area: 
     return _merge(volume.copy(), limit.copy(), first, start, target[order], size[order])
 
 
-@njit(cache=True)
+@kernel
 def _merge(volume, limit, first, start, target, size):
     """Greedy merging; `first` lists the small cells by rising volume."""
     count = len(volume)
@@ -79,7 +80,7 @@ def _merge(volume, limit, first, start, target, size):
     return root
 
 
-@njit(cache=True)
+@kernel
 def combine_faces(faces, area, center, cells):
     """Turn faces to point from the lower to the higher cell, order them by cells and add up duplicates.
 
@@ -139,7 +140,7 @@ def combine_faces(faces, area, center, cells):
     return pairs[:n].copy(), vectors[:n].copy(), middle[:n].copy()
 
 
-@njit(cache=True)
+@kernel
 def outward_sums(cells, faces, area, far_cell, far_area):
     """[cell, xyz] sum of the outward area vectors of each cell's interior and far-field faces."""
     total = np.zeros((cells, 3))

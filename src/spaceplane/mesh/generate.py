@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import math
 import time
+from collections.abc import Callable
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from spaceplane.errors import InputError
 from spaceplane.mesh import assembly, octree
 from spaceplane.mesh.checks import describe
 from spaceplane.mesh.coarsen import coarsen
+from spaceplane.mesh.compiled import CACHE
 from spaceplane.mesh.cutcells import CutCells, cut_cells
 from spaceplane.mesh.grid import Grid, boxes_in_cells, place_grid
 from spaceplane.mesh.mesh import Mesh
@@ -25,8 +27,11 @@ LARGEST_WINDOW = 400_000_000
 # Room round the body in that window, cells below and above.
 PAD_BELOW, PAD_ABOVE = 2, 3
 
+Progress = Callable[[str, int, int, str], None]
+"""Called with (phase, done, total, text)."""
 
-def generate(surface: Surface, settings: MeshSettings | None = None) -> Mesh:
+
+def generate(surface: Surface, settings: MeshSettings | None = None, progress: Progress | None = None) -> Mesh:
     """Mesh the air around a closed surface with an octree whose cells the body cuts.
 
     The wall is exact: wetted area, projected areas and volume equal the surface's, whatever the cell size. A surface
@@ -35,6 +40,7 @@ def generate(surface: Surface, settings: MeshSettings | None = None) -> Mesh:
     Args:
         surface: closed triangulated surface, m.
         settings: cell size and grading; None for the defaults.
+        progress: told when kernels must be compiled first, see `compile_kernels`.
 
     Raises:
         InputError: empty, open or folded surface; cells too many for memory; body too large for the domain.
@@ -42,9 +48,30 @@ def generate(surface: Surface, settings: MeshSettings | None = None) -> Mesh:
     settings = settings or MeshSettings()
     _check(surface)
     fine_parts(surface.part_names, settings)
+    compile_kernels(progress)
     if settings.target_cells is None:
         return _generate(surface, settings, _symmetric(surface, settings))
     return _meet_target(surface, settings)
+
+
+def compile_kernels(progress: Progress | None = None) -> None:
+    """Compile the mesh kernels, or do nothing where an earlier run left all of them in the cache.
+
+    Args:
+        progress: told with the phase "compile mesh", when there is something to compile.
+    """
+    if CACHE.is_complete("mesh"):
+        return
+    if progress:
+        progress("compile mesh", 0, 1, "compiling mesh kernels (once, ~15 s)")
+    corners = np.array([(x, y, z) for x in (0.0, 1.0) for y in (-0.5, 0.5) for z in (0.0, 1.0)])
+    sides = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
+    triangles = np.array([half for a, b, c, d in sides for half in ((a, b, c), (a, c, d))])
+    cube = Surface(corners, triangles, np.zeros(len(triangles), np.int32), ("cube",))
+    for half in (True, False):  # every kernel, with the types of either kind of mesh
+        mesh = _generate(cube, MeshSettings(wall_cell=0.3, far_field=1.0, fine_edges=True), half)
+        coarsen(mesh)
+    CACHE.mark_complete("mesh")
 
 
 def _check(surface: Surface) -> None:

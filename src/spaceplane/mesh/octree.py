@@ -9,7 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
+
+from spaceplane.mesh.compiled import kernel
 
 
 @dataclass(frozen=True)
@@ -214,7 +215,7 @@ def build_leaves(refined: list, fluid: Window) -> Leaves:
     )
 
 
-@njit(cache=True)
+@kernel
 def _number(there, origin, refined, refined_origin, fluid, fluid_origin, level, index, first):
     """Number the leaves of one level: cells that exist, are not refined and whose lower node lies in the fluid."""
     scale = 2**level
@@ -245,7 +246,7 @@ def _number(there, origin, refined, refined_origin, fluid, fluid_origin, level, 
     return found[:count].copy()
 
 
-@njit(cache=True)
+@kernel
 def _connect(places, first, extent, exists, index, origin, coarse_index, coarse_origin):
     """Faces of one level's leaves with leaves of the same level (seen from below) and of the next coarser one."""
     count = len(places)

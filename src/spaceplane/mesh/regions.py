@@ -7,15 +7,15 @@ the cut edges form closed loops; union-find over their shared vertices gives the
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
+from spaceplane.mesh.compiled import kernel
 from spaceplane.mesh.unionfind import find, unite
 
 # Overlap along a grid line, in cells, that is not round-off.
 OVERLAP = 1e-7
 
 
-@njit(cache=True)
+@kernel
 def node_states(shape, vertex_place, line_axis, sign):
     """[i, j, k] int8: 1 at grid nodes in the fluid, 0 in the body, summed from crossings up the z lines."""
     state = np.zeros(shape, np.int8)
@@ -31,7 +31,7 @@ def node_states(shape, vertex_place, line_axis, sign):
     return state
 
 
-@njit(cache=True)
+@kernel
 def edge_intervals(cells, states, points, cross_start, cross_items, vertex, sign):
     """Fluid intervals of the three lower edges of every cut cell.
 
@@ -103,7 +103,7 @@ def edge_intervals(cells, states, points, cross_start, cross_items, vertex, sign
     return start, begin[:total], end[:total], folded
 
 
-@njit(cache=True)
+@kernel
 def list_faces(cells, cell_index):
     """Faces of the cut cells.
 
@@ -143,7 +143,7 @@ def list_faces(cells, cell_index):
     return axes[:total].copy(), corner[:total].copy(), beside[:total].copy(), cell_faces
 
 
-@njit(cache=True)
+@kernel
 def _add_element(n, u0, v0, u1, v1, a, b, loops, ends):
     """Store the directed loop element (u0, v0) -> (u1, v1) between vertices a and b."""
     loops[n, 0] = u0
@@ -154,7 +154,7 @@ def _add_element(n, u0, v0, u1, v1, a, b, loops, ends):
     ends[n, 1] = b
 
 
-@njit(cache=True)
+@kernel
 def _gather(face, axes, corner, cell_index, states, points, segments, intervals, loops, ends, slot_count):
     """Collect the loop elements of a face: its cut edges first, then the fluid intervals of its four edges."""
     segment_start, segment_items, edge_ends = segments
@@ -220,7 +220,7 @@ def _gather(face, axes, corner, cell_index, states, points, segments, intervals,
     return n
 
 
-@njit(cache=True)
+@kernel
 def _connect(n, ends, parent, vertex_element):
     """Union-find over elements that share a vertex. `vertex_element` is scratch of -1 and is left so."""
     corners = np.full(4, -1, np.int32)
@@ -244,7 +244,7 @@ def _connect(n, ends, parent, vertex_element):
                 vertex_element[ends[m, side]] = -1
 
 
-@njit(cache=True)
+@kernel
 def _surrounding(hole, n, loops, parent):
     """Root of the loop that the ray from a hole along the first axis meets first, or -1."""
     u = 0.0
@@ -266,7 +266,7 @@ def _surrounding(hole, n, loops, parent):
     return best
 
 
-@njit(cache=True)
+@kernel
 def _join_holes(n, cut, loops, parent, area):
     """Join loops that wind round the body inside the face (no face edge, negative area) to the region around them."""
     for m in range(n):
@@ -299,7 +299,7 @@ def _join_holes(n, cut, loops, parent, area):
             touches[root] = True
 
 
-@njit(cache=True)
+@kernel
 def face_regions(axes, corner, cell_index, states, points, segments, intervals):
     """Fluid regions of all faces of cut cells.
 

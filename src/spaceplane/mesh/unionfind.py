@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
+
+from spaceplane.mesh.compiled import kernel
 
 
-@njit(cache=True)
+@kernel
 def bucket(keys, buckets):
     """Counting sort: offsets [bucket + 1] and the item numbers ordered by key; negative keys are left out."""
     start = np.zeros(buckets + 1, np.int32)
@@ -24,7 +25,7 @@ def bucket(keys, buckets):
     return start, items
 
 
-@njit(cache=True)
+@kernel
 def find(parent, n):
     """Root of `n` in a union-find forest, halving the path."""
     while parent[n] != n:
@@ -33,7 +34,7 @@ def find(parent, n):
     return n
 
 
-@njit(cache=True)
+@kernel
 def unite(parent, a, b):
     """Join the trees of `a` and `b`; the smaller root stays."""
     a = find(parent, a)

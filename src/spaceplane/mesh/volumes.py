@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
+from spaceplane.mesh.compiled import kernel
 from spaceplane.mesh.unionfind import find, unite
 
 
-@njit(cache=True)
+@kernel
 def connect_volumes(
     edge_tag, polygon_start, loop, polygon_cell, cell_faces, slot_start, slot_region, segment_region, regions
 ):
@@ -46,7 +46,7 @@ def connect_volumes(
     return parent
 
 
-@njit(cache=True)
+@kernel
 def polygon_moments(points, polygon_start, loop, edge_ends, polygon_cell, cells):
     """Area vectors, centroids and divergence-theorem moments of the surface polygons, seen from the fluid.
 
@@ -101,7 +101,7 @@ def polygon_moments(points, polygon_start, loop, edge_ends, polygon_cell, cells)
     return area, weight, center, first, second
 
 
-@njit(cache=True)
+@kernel
 def measure_volumes(parent, axes, beside, region_face, region_area, polygon_cell, first, second):
     """Number the control volumes of the cut cells and measure them.
 

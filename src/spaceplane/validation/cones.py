@@ -44,8 +44,9 @@ def run(fine: bool, progress: Progress) -> list[Record]:
             meshes.setdefault((angle_deg, wall_cell(mach, math.radians(angle_deg), fine)), []).append(mach)
     records = []
     for index, ((angle_deg, cell), machs) in enumerate(meshes.items()):
-        progress(f"half angle {angle_deg:g} deg, Mach {', '.join(f'{m:g}' for m in machs)}", index / len(meshes))
-        records += cone_records(math.radians(angle_deg), tuple(machs), cell)
+        done = index / len(meshes)
+        progress(f"half angle {angle_deg:g} deg, Mach {', '.join(f'{m:g}' for m in machs)}", done)
+        records += cone_records(math.radians(angle_deg), tuple(machs), cell, progress, done)
     return records
 
 
@@ -56,13 +57,26 @@ def wall_cell(mach: float, half_angle: float, fine: bool) -> float:
     return min(1.0 / along, layer / across)
 
 
-def cone_records(half_angle: float, machs: tuple[float, ...], cell: float) -> list[Record]:
-    """Records of one cone of unit length at each Mach number; `half_angle` rad, wall `cell` m."""
+def cone_records(
+    half_angle: float,
+    machs: tuple[float, ...],
+    cell: float,
+    progress: Progress | None = None,
+    done: float = 0.0,
+) -> list[Record]:
+    """Records of one cone of unit length at each Mach number.
+
+    Args:
+        half_angle: of the cone, rad.
+        machs: Mach numbers.
+        cell: wall cell, m.
+        progress, done: see `flowcase.solve_body`.
+    """
     surface = bodies.cone(half_angle)
     mach = np.repeat(machs, 3)
     alpha, beta = np.tile([0.0, STEP, 0.0], len(machs)), np.tile([0.0, 0.0, STEP], len(machs))
     settings = MeshSettings(wall_cell=cell, far_field=2.0, wall_layers=WALL_LAYERS)
-    solution = solve_body(surface, settings, FlowConditions(mach, alpha, beta))
+    solution = solve_body(surface, settings, FlowConditions(mach, alpha, beta), progress, done)
     area = math.pi * math.tan(half_angle) ** 2
     coefficients = integrate(solution, reference_of(area, 1.0)).sel(part="total")
     cp = surface_cp(solution)

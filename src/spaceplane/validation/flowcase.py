@@ -10,6 +10,7 @@ from spaceplane.flow.solve import solve
 from spaceplane.mesh.generate import generate
 from spaceplane.mesh.mesh import Mesh
 from spaceplane.mesh.settings import MeshSettings
+from spaceplane.validation.cases import Progress
 from spaceplane.vehicle.properties import ReferenceLengths
 from spaceplane.vehicle.surface import Surface
 
@@ -17,9 +18,28 @@ ITERATIONS = 250
 """More patience than an analysis has: a validation case should not fail for want of iterations."""
 
 
-def solve_body(surface: Surface, mesh: MeshSettings, conditions: FlowConditions) -> Solution:
-    """Mesh the body and solve every condition; default flow settings but for the number of iterations allowed."""
-    return solve(generate(surface, mesh), conditions, FlowSettings(iterations=ITERATIONS))
+def solve_body(
+    surface: Surface,
+    mesh: MeshSettings,
+    conditions: FlowConditions,
+    progress: Progress | None = None,
+    done: float = 0.0,
+) -> Solution:
+    """Mesh the body and solve every condition; default flow settings but for the number of iterations allowed.
+
+    Args:
+        surface: closed surface, m.
+        mesh: how to mesh.
+        conditions: free streams.
+        progress: told when kernels are compiled, which only a first run does.
+        done: fraction of the case (0 to 1) that lies behind it.
+    """
+
+    def say(phase: str, _done: int, _total: int, text: str) -> None:
+        if progress and phase.startswith("compile"):
+            progress(f"{phase}: {text}", done)
+
+    return solve(generate(surface, mesh, say), conditions, FlowSettings(iterations=ITERATIONS), say)
 
 
 def reference_of(

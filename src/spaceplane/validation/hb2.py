@@ -40,7 +40,7 @@ def run(fine: bool, progress: Progress) -> list[Record]:
     mach = np.repeat(list(MEASURED), 2)
     alpha = np.tile([0.0, STEP], len(MEASURED))
     conditions = FlowConditions(mach, alpha, np.zeros_like(alpha))
-    solution = solve_body(bodies.hb2(), MeshSettings(wall_cell=1.0 / (24 if fine else 12)), conditions)
+    solution = solve_body(bodies.hb2(), MeshSettings(wall_cell=1.0 / (24 if fine else 12)), conditions, progress)
     reference = reference_of(math.pi / 4.0, 1.0, (MOMENT_STATION, 0.0, 0.0))
     values = integrate(solution, reference).sel(part="total")
     records = []

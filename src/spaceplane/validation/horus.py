@@ -76,7 +76,7 @@ def run(fine: bool, progress: Progress) -> list[Record]:
     vehicle, cell = horus_2b(), CELL_FINE if fine else CELL_COARSE
     stages = 1 + len(DEFLECTED)
     progress("clean", 0.0)
-    clean = coefficients(vehicle, CLEAN, cell)
+    clean = coefficients(vehicle, CLEAN, cell, progress)
     records = static_records(clean) + impact_records(vehicle) + lateral_records(clean)
     records += moment_center_records(clean, vehicle)
     for index, configuration in enumerate(DEFLECTED):
@@ -96,10 +96,12 @@ def conditions(lateral: bool) -> FlowConditions:
     return FlowConditions(*np.array(grid).T.copy())
 
 
-def coefficients(vehicle: Vehicle, configuration: Configuration, cell: float) -> xr.Dataset:
+def coefficients(
+    vehicle: Vehicle, configuration: Configuration, cell: float, progress: Progress | None = None
+) -> xr.Dataset:
     """Total coefficients on the grid of the tables; wall `cell` m. An unconverged condition has NaN."""
     surface = build(vehicle.shape, ControlDeflections.from_degrees(**configuration.deflections_deg))
-    solution = solve_body(surface, MeshSettings(wall_cell=cell), conditions(lateral=configuration is CLEAN))
+    solution = solve_body(surface, MeshSettings(wall_cell=cell), conditions(lateral=configuration is CLEAN), progress)
     total = integrate(solution, vehicle.reference).sel(part="total")
     return total.where([record.good for record in solution.records])
 

@@ -38,7 +38,8 @@ def run(fine: bool, progress: Progress) -> list[Record]:
     cell = 2.0 / (48 if fine else 24)
     progress(f"Mach {', '.join(f'{mach:g}' for mach in MACHS)}", 0.0)
     zero = np.zeros(len(MACHS))
-    solution = solve_body(bodies.sphere(), MeshSettings(wall_cell=cell), FlowConditions(np.array(MACHS), zero, zero))
+    conditions = FlowConditions(np.array(MACHS), zero, zero)
+    solution = solve_body(bodies.sphere(), MeshSettings(wall_cell=cell), conditions, progress)
     return sphere_records(solution)
 
 
