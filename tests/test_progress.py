@@ -18,12 +18,14 @@ def told(bodies: int, calls: list[tuple]) -> list[tuple[str, float]]:
 def test_fractions_only_grow_over_bodies_and_phases():
     calls = []
     for body in ("base", "elevon_left +5 deg", "body_flap +5 deg"):
-        calls += [(f"{body}: geometry", 0, 1, ""), (f"{body}: mesh", 0, 1, ""), (f"{body}: coarse 2", 30, 60, "x")]
+        calls += [(f"{body}: geometry", 0, 1, ""), (f"{body}: compile mesh", 0, 1, ""), (f"{body}: mesh", 0, 1, "")]
+        calls += [(f"{body}: start level 2, order 1", 30, 60, "x"), (f"{body}: start level 1, order 2", 1, 60, "x")]
         calls += [(f"{body}: fine", k, 120, "x") for k in range(0, 60, 10)]
     calls += [("flight dynamics", 0, 1, ""), ("report", 0, 1, "out")]
     fractions = [fraction for _, fraction in told(3, calls)]
     assert fractions == sorted(fractions)
     assert fractions[0] == 0.0
+    assert fractions[5] < progress.BASE_SHARE * 0.3  # coarse levels are the beginning of a body
     assert fractions[-1] > 0.9
     assert max(fractions) <= 1.0
 

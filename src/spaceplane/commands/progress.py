@@ -13,12 +13,13 @@ QUIET_SECONDS = 2.0  # shorter work says nothing
 Tell = Callable[..., None]
 Show = Callable[[str, float], None]
 
-# Where each phase of one body's computation begins and ends, as a fraction of it.
+# Where each phase of one body's computation begins and ends, as a fraction of it; by whole name or first word.
 PHASES = {
     "geometry": (0.00, 0.02),
     "mesh": (0.02, 0.10),
+    "compile mesh": (0.00, 0.00),
     "compile": (0.10, 0.10),
-    "coarse": (0.10, 0.25),
+    "start": (0.10, 0.25),
     "fine": (0.25, 0.97),
     "retry": (0.97, 0.97),
 }
@@ -52,7 +53,7 @@ def _whole(show: Show, bodies: int) -> Tell:
             return
         done, total, text = rest
         body, _, phase = line.rpartition(": ")
-        low, high = PHASES.get(phase.split(" ")[0], (None, None))
+        low, high = PHASES.get(phase) or PHASES.get(phase.split(" ")[0], (None, None))
         if low is not None:
             if body not in begun:
                 begun.append(body)
