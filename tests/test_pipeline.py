@@ -82,6 +82,8 @@ def test_result_holds_the_whole_chain(written):
             total = point["coefficients"][name]
             assert sum(part[name] for part in parts.values()) == pytest.approx(total, abs=1e-12)
         assert point["coefficients"]["L_over_D"] == pytest.approx(total_ratio(point))
+        assert set(point["coefficient_errors"]) == {"CL", "CD", "CY", "Cl", "Cm", "Cn", "CA", "CN"}
+        assert all(error == 0.0 for error in point["coefficient_errors"].values())  # nothing wanders in this flow
         labels = [row["label"] for row in point["convergence"]]
         assert labels[:6] == ["base", "alpha+", "alpha-", "mach+", "mach-", "beta"]
         assert labels[6:] == ["elevon_left +10 deg", "rudder_left +10 deg", "body_flap +10 deg"]
@@ -177,6 +179,7 @@ def test_a_failed_condition_poisons_what_rests_on_it_and_says_so(monkeypatch, tm
     assert first["derivatives"]["CY_beta"]["value"] is not None
     assert (first["A"], first["modes"]) == (None, [])
     assert second["coefficients"]["CL"] is None
+    assert second["coefficient_errors"]["Cm"] is None
     assert second["equilibrium"]["p_rads"] is None
     text = "\n".join(result["warnings"])
     assert "Mach 1.5, condition alpha+: failed: made to fail" in text

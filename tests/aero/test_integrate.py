@@ -1,9 +1,10 @@
+import math
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from spaceplane.aero.integrate import COEFFICIENTS, PRESSURES, integrate, mirrored, wetted_area
+from spaceplane.aero.integrate import COEFFICIENTS, PRESSURES, WITH_SPREAD, integrate, mirrored, wetted_area
 
 
 def total(data, name, condition=0):
@@ -106,6 +107,15 @@ def test_spread_is_rescaled_from_wetted_to_reference_area(make_solution, box, le
     assert wetted_area(box) == pytest.approx(2 * (4 * 2 + 4 * 1 + 2 * 1))
     assert float(data.CL_spread[0]) == pytest.approx(0.01 * 28.0 / 8.0)
     assert float(data.Cm_spread[0]) > 0.0
+
+
+def test_a_force_that_wanders_turns_the_body_with_the_walls_arm(make_solution, box, make_lengths):
+    """Seen from far ahead every piece of wall has one arm; about its middle a box of 4 by 2 by 1 m has 1.376 m."""
+    for station, arm in ((-1000.0, 1000.0), (0.0, math.sqrt((4 * 2**2 + 24 * 4 / 3 + 16 / 4 + 12 / 12) / 28))):
+        lengths = replace(make_lengths(), moment_center=(station, 0.0, 0.0))
+        data = integrate(make_solution(box, smooth, alpha=0.0, spread=0.01), lengths)
+        assert float(data.Cm_spread[0] / data.CN_spread[0]) * lengths.chord == pytest.approx(arm, rel=0.01)
+    assert set(WITH_SPREAD) == {name.removesuffix("_spread") for name in data.data_vars if name.endswith("_spread")}
 
 
 def test_the_spread_of_a_slow_oscillation_is_that_of_the_last_third(box, lengths, make_solution):

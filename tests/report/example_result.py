@@ -138,6 +138,9 @@ def flight_point(name: str, mach: float, altitude: float, alpha: float) -> dict:
             "CL": 0.36, "CD": 0.2, "CY": 1e-6, "Cl": -2e-7, "Cm": -0.0123, "Cn": 3e-7, "CA": 0.09, "CN": 0.41,
             "CA_forebody": 0.06, "CA_base": 0.03, "L_over_D": 1.8, "Cp_max": 1.79, "Cp_min": -0.23,
         },
+        "coefficient_errors": {
+            "CL": 4e-4, "CD": 2e-4, "CY": 1e-7, "Cl": 3e-5, "Cm": 1.5e-4, "Cn": 2e-6, "CA": 1e-4, "CN": 5e-4,
+        },
         "coefficients_by_part": by_part, "derivatives": derivatives,
         "equilibrium": {"p_rads": 0.0021, "q_rads": 0.012, "r_rads": 0.0084},
         "A": np.diag(np.arange(1.0, 10.0)).tolist(), "B": np.ones((9, 5)).tolist(), "states": STATES,

@@ -85,6 +85,7 @@ def test_numbers_of_the_result_are_shown(html):
     result = example_result()
     assert "213 456" in text
     assert "1.405 ± 0.018" in text  # CL_alpha at Mach 2.5 with its error
+    assert "−0.01230 ± 0.00015" in text  # Cm with what the wandering of the forces means for it
     assert "lateral oscillation" in text and "aperiodic pitch divergence" in text
     assert "paragraph 3.3.1.1" in text and "below 3" in text
     assert "not applicable: aperiodic" in text

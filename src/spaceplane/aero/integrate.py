@@ -13,6 +13,8 @@ from spaceplane.mesh.mesh import Mesh
 
 TOTAL = "total"
 COEFFICIENTS = ("CL", "CD", "CY", "Cl", "Cm", "Cn", "CA", "CN", "CA_forebody", "CA_base")
+WITH_SPREAD = ("CL", "CD", "CY", "Cl", "Cm", "Cn", "CA", "CN")
+"""Coefficients whose wandering is known or estimated, see `integrate`."""
 PRESSURES = ("Cp_max", "Cp_min")
 LATERAL = ("CY", "Cl", "Cn")
 
@@ -60,8 +62,9 @@ def integrate(solution: Solution, reference: Reference) -> xr.Dataset:
     Returns:
         Dataset with dims (condition, part); `part` holds "total" first and then the parts of the surface. Each of
         COEFFICIENTS and PRESSURES has the attributes units, axes, positive and reference; `<name>_spread`
-        (condition) is half the peak-to-peak in the solver's final window. Coordinates along `condition`: mach, alpha,
-        beta (rad), verdict, reason. A condition that failed has NaN everywhere.
+        (condition) of WITH_SPREAD is half the peak-to-peak in the solver's final window, for moments the estimate that
+        the forces' wandering acts at the wall's root-mean-square distance from the moment centre. Coordinates along
+        `condition`: mach, alpha, beta (rad), verdict, reason. A condition that failed has NaN everywhere.
     """
     mesh, conditions = solution.mesh, solution.conditions
     force, moment, forebody = _loads(solution, np.asarray(reference.moment_center, dtype=float))
@@ -129,7 +132,8 @@ def _spread(solution: Solution, reference: Reference) -> dict[str, np.ndarray]:
 
     Forces that still wander may do so more slowly than the window is long: theirs is the last third of the iterations.
     The solver records forces only. What a force spread means for a moment is estimated by letting it act at the wall's
-    root-mean-square distance from the moment centre.
+    root-mean-square distance from the moment centre; no bound, since forces that wander against each other on two
+    parts of the wall turn the body without showing in their sum.
     """
     mesh, conditions = solution.mesh, solution.conditions
     raw = np.array([_wander(record) for record in solution.records]).reshape(-1, 3)

@@ -10,7 +10,7 @@ import xarray as xr
 
 from spaceplane import __version__
 from spaceplane.aero.conditions import ConditionPlan
-from spaceplane.aero.integrate import COEFFICIENTS, PRESSURES, TOTAL, wetted_area
+from spaceplane.aero.integrate import COEFFICIENTS, PRESSURES, TOTAL, WITH_SPREAD, wetted_area
 from spaceplane.analysis.flight import PointAnalysis
 from spaceplane.analysis.found import Analysis
 from spaceplane.dynamics.modes import to_record as mode_record
@@ -109,6 +109,7 @@ def flight_point(analysis: Analysis, index: int) -> dict:
             "notes": list(found.validity.notes),
         },
         "coefficients": coefficients,
+        "coefficient_errors": {name: float(totals[f"{name}_spread"]) for name in WITH_SPREAD},
         "coefficients_by_part": coefficients_by_part(analysis.coefficients, analysis.plan.points[index].base),
         "derivatives": derivatives(analysis.derivatives, index),
         "convergence": convergence(analysis, index),

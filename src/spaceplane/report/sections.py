@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 
 from markupsafe import Markup
 
@@ -162,25 +161,14 @@ def _flight_rows(points: list[dict]) -> list[dict]:
 
 def _coefficient_rows(points: list[dict]) -> list[dict]:
     rows = []
-    wander = [force_wander(p) for p in points]
+    errors = [p.get("coefficient_errors") or {} for p in points]
     for name, (what, axes) in COEFFICIENTS.items():
         values = [(p.get("coefficients") or {}).get(name) for p in points]
         if any(is_number(v) for v in values):
             text = f"{what} ({axes})" if axes else what
-            cells = [_coefficient(v, w.get(name)) for v, w in zip(values, wander, strict=True)]
+            cells = [_coefficient(v, e.get(name)) for v, e in zip(values, errors, strict=True)]
             rows.append({"symbol": Markup(symbol(name)), "what": text, "cells": cells})
     return rows
-
-
-def force_wander(point: dict) -> dict[str, float]:
-    """How far the base condition's force coefficients still wandered at the end; CL and CD from CA and CN."""
-    base = next((r for r in point.get("convergence") or [] if r.get("label") == "base"), {})
-    found = {k: v for k, v in (base.get("window_spread") or {}).items() if is_number(v)}
-    if {"CA", "CN"} <= set(found) and is_number(point.get("alpha_deg")):
-        cosine, sine = (abs(f(math.radians(point["alpha_deg"]))) for f in (math.cos, math.sin))
-        found["CL"] = cosine * found["CN"] + sine * found["CA"]
-        found["CD"] = cosine * found["CA"] + sine * found["CN"]
-    return found
 
 
 def _coefficient(value: float | None, error: float | None) -> Measured:
