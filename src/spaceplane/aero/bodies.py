@@ -87,7 +87,19 @@ def solve_vehicle(
     progress: Progress | None = None,
     name: str = "body",
 ) -> SolvedBody:
-    """Build, mesh and solve one body; its name stands before each phase told to `progress`."""
+    """Build, mesh and solve one body.
+
+    Args:
+        vehicle: shape.
+        deflections: of all control surfaces.
+        conditions: free streams.
+        mesh_settings, flow_settings: how to mesh and solve.
+        progress: called with (phase, done, total, text).
+        name: stands before each phase told to `progress`, with a colon after it.
+
+    Raises:
+        InputError: a shape that cannot be built, or a mesh or condition that is not allowed.
+    """
 
     def say(phase: str, done: int, total: int, text: str) -> None:
         if progress:
@@ -119,6 +131,17 @@ def control_runs(
 
     Right-hand surfaces are left out where symmetry gives them. With `two_step_sizes` each surface is moved by half the
     step as well.
+
+    Args:
+        vehicle: shape and reference lengths.
+        deflections: of the base body.
+        step: rad.
+        conditions: base condition of each flight point.
+        mesh_settings, flow_settings, progress: as for `solve_vehicle`.
+        two_step_sizes: two runs for each surface.
+
+    Raises:
+        InputError: as `solve_vehicle`.
     """
     symmetric = is_symmetric(deflections) and not conditions.beta.any()
     runs = []

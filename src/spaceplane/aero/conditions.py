@@ -15,7 +15,13 @@ BASE = "base"
 
 
 class AeroPoint(Protocol):
-    """What the aerodynamic stage needs of a flight point: Mach number and angles (rad)."""
+    """What the aerodynamic stage needs of a flight point.
+
+    Attributes:
+        mach: Mach number.
+        alpha: angle of attack, rad.
+        beta: sideslip, rad, wind from the right positive.
+    """
 
     mach: float
     alpha: float
@@ -152,7 +158,11 @@ class _Ensemble:
 
 
 def product(machs: list[float], alphas: list[float], betas: list[float], gamma: float = 1.4) -> FlowConditions:
-    """Every combination of Mach number, angle of attack and sideslip (rad), Mach varying slowest, beta fastest."""
+    """Every combination of Mach number, angle of attack and sideslip (rad), Mach varying slowest, beta fastest.
+
+    Raises:
+        InputError: an empty list, or a value that no flow can have.
+    """
     grid = [(m, a, b) for m in machs for a in alphas for b in betas]
     if not grid:
         raise InputError("conditions: at least one Mach number, one alpha and one beta are needed")

@@ -46,7 +46,7 @@ def require_places(arguments: Sequence[str]) -> None:
 
 
 def number(option: str, text: str, unit: str = "") -> float:
-    """A finite number.
+    """A finite number in the option's `unit`, which the message names.
 
     Raises:
         InputError: naming the option and the text.
@@ -61,7 +61,7 @@ def number(option: str, text: str, unit: str = "") -> float:
 
 
 def numbers(option: str, text: str, unit: str = "", count: int | None = None) -> list[float]:
-    """Numbers between commas; blanks around them are fine.
+    """Numbers between commas, in the option's `unit`; blanks around them are fine.
 
     Raises:
         InputError: empty, not a number, or not `count` of them.
@@ -105,7 +105,7 @@ def angles(option: str, text: str, limit_deg: float = 90.0) -> list[float]:
 
 
 def positive(option: str, text: str, unit: str) -> float:
-    """A number above 0.
+    """A number above 0 in the option's `unit`.
 
     Raises:
         InputError: not a number, or not above 0.
@@ -117,7 +117,7 @@ def positive(option: str, text: str, unit: str) -> float:
 
 
 def assignments(option: str, texts: Sequence[str] | None) -> dict[str, float]:
-    """`name=value` texts (also several between commas) as a dict.
+    """`name=value` texts (also several between commas) as a dict of numbers, each in the unit that its name implies.
 
     Raises:
         InputError: no `=`, no name, a value that is not a number, or a name given twice.

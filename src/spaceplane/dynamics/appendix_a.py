@@ -22,7 +22,14 @@ INPUTS = ("elevator", "aileron", "rudder", *MOMENT_INPUTS)
 def state_space(
     point: FlightPoint, mass: MassProperties, reference: ReferenceLengths, derivatives: Derivatives
 ) -> StateSpace:
-    """A (equations A.1 to A.43) and B (A.44 to A.59) at a flight point with CL and CD; SI units and rad."""
+    """A (equations A.1 to A.43) and B (A.44 to A.59) at a flight point with CL and CD; SI units and rad.
+
+    Args:
+        point: flight point with CL and CD.
+        mass: kg, kg m2.
+        reference: m2, m.
+        derivatives: per rad and per unit Mach number.
+    """
     A = np.zeros((9, 9))
     _translation(A, point, mass, reference, derivatives)
     _rotation(A, point, mass, reference, derivatives)

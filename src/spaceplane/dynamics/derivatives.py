@@ -36,6 +36,9 @@ class Derivatives:
     Angle derivatives per rad; `_M` per unit Mach; rate derivatives on p b/2V, q c/2V, r b/2V and dalpha/dt c/2V. The
     stable signs are Cm_alpha < 0, Cn_beta > 0, Cl_beta < 0, CY_beta < 0 and negative Cm_q, Cl_p, Cn_r.
 
+    The fields are those of thesis Table 7.1 (CD, CL, Cm with alpha and Mach number; CY, Cl, Cn with beta), which every
+    analysis has, and the damping derivatives, 0 where they are not known.
+
     Attributes:
         controls: {"Cm_elevator": per rad, ...}; names as in `CONTROL_DERIVATIVES`.
     """
@@ -122,7 +125,7 @@ def is_per_angle(name: str) -> bool:
 
 
 def from_mapping(values: Mapping[str, float]) -> Derivatives:
-    """Derivatives from one flat mapping of names to per-radian values.
+    """Derivatives from one flat mapping of names to values, per rad and (`_M`) per unit Mach number.
 
     Raises:
         InputError: a static derivative is missing, a name is unknown or a value is not finite.

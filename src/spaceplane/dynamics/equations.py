@@ -125,6 +125,9 @@ def flight_model(
         derivatives: per rad and per unit Mach.
         density_gradient: let density and speed of sound change with height. False gives the thesis's uniform air.
         gyroscopic: keep the gyroscopic moments. False drops them, as the thesis's linearisation does.
+
+    Raises:
+        InputError: the flight point has no CL or CD, or a reference length is 0.
     """
     rates = equilibrium_rates(point, mass.mass, reference.area)
     force = point.dynamic_pressure * reference.area

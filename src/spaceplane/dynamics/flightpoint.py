@@ -115,7 +115,7 @@ class FlightPoint:
         return replace(self, CL=float(CL), CD=float(CD))
 
     def coefficients(self) -> tuple[float, float]:
-        """(CL, CD).
+        """(CL, CD), both on dynamic pressure and reference area.
 
         Raises:
             InputError: one of them is missing or not finite.
@@ -152,6 +152,15 @@ def flight_point(
     """A flight point from the quantities users give, angles in degrees.
 
     The air is the US 1976 atmosphere's at `altitude_m`; a pressure or temperature given replaces the standard's.
+
+    Args:
+        mach: Mach number.
+        altitude_m: geometric altitude, m.
+        alpha_deg, gamma_deg, bank_deg: angle of attack, flight-path angle (climb positive) and bank angle, deg.
+        CL, CD: lift and drag coefficient, where known.
+        pressure_Pa, temperature_K: ambient state, where it is not the standard's.
+        name: "Mach ..." by default.
+        alpha_source: where the angle of attack comes from, for the report.
 
     Raises:
         InputError: a value is not finite or outside its limits.
@@ -206,6 +215,14 @@ def taem_point(
     """The point of the descent at a Mach number: altitude by Table 4.1, angle of attack by the schedule, unless given.
 
     Works at every Mach number of the tables, 0.8 to 25, so also for the hypersonic check at Mach 5 and 10.
+
+    Args:
+        mach: Mach number.
+        altitude_m: m.
+        alpha_deg, gamma_deg, bank_deg: angle of attack, flight-path angle and bank angle, deg.
+
+    Raises:
+        InputError: a Mach number outside the tables without the altitude or angle of attack that they would give.
     """
     if alpha_deg is not None:
         source = "given"

@@ -56,7 +56,14 @@ KINDS = {
 
 @dataclass(frozen=True)
 class Naming:
-    """A mode's name, the key of it in `KINDS`, its group and the reason."""
+    """What a mode is called and why.
+
+    Attributes:
+        name: such as lateral oscillation.
+        kind: key of the name in `KINDS`.
+        group: longitudinal, lateral or coupled.
+        explanation: the reason, in words.
+    """
 
     name: str
     kind: str

@@ -63,7 +63,7 @@ class Mode:
         return self.half_time is not None
 
     def share(self, *states: str) -> float:
-        """Participation of some states together; states that the system lacks count nothing."""
+        """Participation of some states together, 0 to 1; states that the system lacks count nothing."""
         return float(sum(self.participation[self.states.index(s)] for s in states if s in self.states))
 
 

@@ -61,6 +61,6 @@ class StateSpace:
 
 
 def from_matrix(A: np.ndarray, states: tuple[str, ...], form: str = "given") -> StateSpace:
-    """A system without inputs."""
+    """A system without inputs: A [state, state], SI units and rad, its states by name."""
     matrix = np.asarray(A, dtype=float)
     return StateSpace(matrix, np.zeros((len(states), 0)), tuple(states), (), form)

@@ -142,7 +142,14 @@ def combine_faces(faces, area, center, cells):
 
 @kernel
 def outward_sums(cells, faces, area, far_cell, far_area):
-    """[cell, xyz] sum of the outward area vectors of each cell's interior and far-field faces."""
+    """[cell, xyz] sum of the outward area vectors of each cell's interior and far-field faces.
+
+    Args:
+        cells: number of cells.
+        faces: [face, 2] cells, the area vector pointing from the first to the second.
+        area: [face, xyz].
+        far_cell, far_area: [far face] cell and outward area vector.
+    """
     total = np.zeros((cells, 3))
     for f in range(len(faces)):
         for d in range(3):

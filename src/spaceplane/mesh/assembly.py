@@ -76,6 +76,9 @@ def assemble(
         leaves: uncut cells of the domain.
         part: [triangle] part of the surface; upstream: [triangle] whether its outward normal has n_x < 0.
         half: whether the domain's face y = 0 is a plane of symmetry.
+
+    Raises:
+        RuntimeError: a fluid face of a cut cell has no cell beyond it (never seen; window and octree would not fit).
     """
     first = len(cut.volume)
     edge = (1 << leaves.level.astype(np.int64)).astype(np.float64)

@@ -217,6 +217,9 @@ def sequence(
     Returns:
         Meshes from coarse to fine, and for each but the first [cell] int32 the cell of the mesh before that holds it:
         `maps[n]` carries values of `meshes[n]` to `meshes[n + 1]` as `coarse_values[maps[n]]`.
+
+    Raises:
+        InputError: as `generate`, or no level at all.
     """
     if levels < 1:
         raise InputError(f"levels: {levels}, must be at least 1")

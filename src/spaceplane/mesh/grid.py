@@ -48,7 +48,16 @@ class Grid:
 
 
 def place_grid(surface: Surface, settings: MeshSettings, half: bool) -> Grid:
-    """Lay the grid: y = 0 is a cell face of every level, the body keeps its place within a wall cell in x and z."""
+    """Lay the grid: y = 0 is a cell face of every level, the body keeps its place within a wall cell in x and z.
+
+    Args:
+        surface: the body, m.
+        settings: cell size, far field and offset.
+        half: whether the grid ends at y = 0.
+
+    Raises:
+        InputError: a domain that does not hold the body and four cells round it.
+    """
     cell = settings.wall_cell / (2.0 if settings.graded_wall else 1.0)
     low, high = surface.bounds
     length = float((high - low).max())

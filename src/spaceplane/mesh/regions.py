@@ -17,7 +17,14 @@ OVERLAP = 1e-7
 
 @kernel
 def node_states(shape, vertex_place, line_axis, sign):
-    """[i, j, k] int8: 1 at grid nodes in the fluid, 0 in the body, summed from crossings up the z lines."""
+    """[i, j, k] int8: 1 at grid nodes in the fluid, 0 in the body, summed from crossings up the z lines.
+
+    Args:
+        shape: (i, j, k) nodes of the window.
+        vertex_place: [crossing, ijk] plane indices, and the slab along the line.
+        line_axis: [crossing] axis along which the grid line runs.
+        sign: [crossing] +1 where the line enters the fluid going up, -1 where it leaves it.
+    """
     state = np.zeros(shape, np.int8)
     for n in range(len(sign)):
         if line_axis[n] == 2:
@@ -37,6 +44,13 @@ def edge_intervals(cells, states, points, cross_start, cross_items, vertex, sign
 
     An interval begins at a fluid node or an entering crossing and ends at a leaving crossing or a fluid node; sorted
     beginnings are paired with sorted ends, so that crossings misplaced by round-off change no connection.
+
+    Args:
+        cells: [cell, ijk] cut cells.
+        states: [i, j, k] from `node_states`.
+        points: [vertex, xyz] in grid coordinates.
+        cross_start, cross_items: crossings of each edge, see `unionfind.bucket`.
+        vertex, sign: [crossing] vertex, and +1 where the edge enters the fluid going up.
 
     Returns:
         start [3 * cell + axis + 1], begin [interval], end [interval]: vertices, -1 the lower node, -2 the upper node.
@@ -302,6 +316,13 @@ def _join_holes(n, cut, loops, parent, area):
 @kernel
 def face_regions(axes, corner, cell_index, states, points, segments, intervals):
     """Fluid regions of all faces of cut cells.
+
+    Args:
+        axes, corner: [face] from `list_faces`.
+        cell_index: [i, j, k] number of the cut cell, or -1.
+        states, points: as for `edge_intervals`.
+        segments: cut edges of the face 3 * (cell above) + axis, see `unionfind.bucket`, and [edge, 2] their vertices.
+        intervals: what `edge_intervals` returned.
 
     Returns:
         region_face [region], region_area [region], region_moment [region, 2] (first moments along the face's two axes

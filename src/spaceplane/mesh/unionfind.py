@@ -27,7 +27,7 @@ def bucket(keys, buckets):
 
 @kernel
 def find(parent, n):
-    """Root of `n` in a union-find forest, halving the path."""
+    """Root of item `n` in a union-find forest `parent` [item], halving the path."""
     while parent[n] != n:
         parent[n] = parent[parent[n]]
         n = parent[n]
@@ -36,7 +36,7 @@ def find(parent, n):
 
 @kernel
 def unite(parent, a, b):
-    """Join the trees of `a` and `b`; the smaller root stays."""
+    """Join the trees of items `a` and `b` in a forest `parent` [item]; the smaller root stays."""
     a = find(parent, a)
     b = find(parent, b)
     if a < b:

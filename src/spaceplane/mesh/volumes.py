@@ -15,6 +15,13 @@ def connect_volumes(
     """Union-find forest over region sides (2 * region + side) and polygons (2 * regions + polygon).
 
     Side 0 of a region is the cell below its face, side 1 the cell above.
+
+    Args:
+        edge_tag, polygon_start, loop: as in `subdivide.Subdivision`.
+        polygon_cell: [polygon] cut cell.
+        cell_faces: [cell, 2 * axis + side], see `regions.list_faces`.
+        slot_start, slot_region, segment_region: from `regions.face_regions`.
+        regions: number of regions.
     """
     polygons = len(polygon_cell)
     parent = np.arange(2 * regions + polygons).astype(np.int32)
@@ -49,6 +56,12 @@ def connect_volumes(
 @kernel
 def polygon_moments(points, polygon_start, loop, edge_ends, polygon_cell, cells):
     """Area vectors, centroids and divergence-theorem moments of the surface polygons, seen from the fluid.
+
+    Args:
+        points: [vertex, xyz] in grid coordinates.
+        polygon_start, loop, edge_ends: as in `subdivide.Subdivision`.
+        polygon_cell: [polygon] cut cell.
+        cells: [cell, ijk].
 
     Returns:
         area [polygon, xyz] out of the fluid, weight [polygon] sum of triangle areas, center [polygon, xyz] in grid
@@ -104,6 +117,13 @@ def polygon_moments(points, polygon_start, loop, edge_ends, polygon_cell, cells)
 @kernel
 def measure_volumes(parent, axes, beside, region_face, region_area, polygon_cell, first, second):
     """Number the control volumes of the cut cells and measure them.
+
+    Args:
+        parent: forest from `connect_volumes`.
+        axes, beside: [face] axis and [face, 2] cut cell below and above.
+        region_face, region_area: [region] from `regions.face_regions`.
+        polygon_cell: [polygon] cut cell.
+        first, second: [polygon, xyz] from `polygon_moments`.
 
     Returns:
         side_volume [region, 2] (-1: not a cut cell), polygon_volume [polygon], cell [volume],

@@ -106,7 +106,14 @@ def assess(
 
 
 def load_factor_slope(CL_alpha: float, dynamic_pressure: float, area: float, weight: float) -> float:
-    """n/alpha, g/rad: steady normal load factor per angle of attack at constant speed, q S C_L_alpha / W."""
+    """n/alpha, g/rad: steady normal load factor per angle of attack at constant speed, q S C_L_alpha / W.
+
+    Args:
+        CL_alpha: per rad.
+        dynamic_pressure: Pa.
+        area: reference area, m2.
+        weight: N.
+    """
     return dynamic_pressure * area * CL_alpha / weight
 
 

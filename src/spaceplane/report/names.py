@@ -44,7 +44,13 @@ _VARIABLES = {"alpha": "α", "beta": "β", "M": "M", "mach": "M", "p": "p", "q":
 
 @dataclass(frozen=True)
 class Derivative:
-    """A derivative's name taken apart: coefficient, what it is taken with, and whether that is a control."""
+    """A derivative's name taken apart.
+
+    Attributes:
+        coefficient: such as Cm.
+        variable: what it is taken with, such as alpha or elevon_left.
+        control: whether that is a control surface.
+    """
 
     coefficient: str
     variable: str

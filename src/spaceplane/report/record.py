@@ -160,7 +160,15 @@ def convergence(analysis: Analysis, point: int) -> list[dict]:
 
 
 def convergence_row(one: ConvergenceRecord, plan: ConditionPlan, condition: int, label: str, scale: float) -> dict:
-    """How one condition converged; `scale` is the factor that takes its forces to the reference area."""
+    """How one condition converged; `scale` is the factor that takes its forces to the reference area.
+
+    Args:
+        one: how it converged; forces on the wetted area.
+        plan: of the ensemble that the condition's free stream is taken from.
+        condition: its number there.
+        label: what the condition is for.
+        scale: wetted area over reference area.
+    """
     spread = np.asarray(one.window_spread) * scale
     return {
         "label": label,

@@ -131,7 +131,7 @@ def _chips(result: dict) -> list[tuple[str, str]]:
 
 
 def total_seconds(result: dict) -> float | None:
-    """Seconds of all recorded phases together."""
+    """Seconds of all recorded phases together, s."""
     phases = seconds_by_phase(result)
     return sum(phases.values()) if phases else None
 

@@ -14,7 +14,12 @@ from spaceplane.report.numbers import MINUS
 
 @dataclass(frozen=True)
 class Scale:
-    """A map from numbers to 0..1, linear or symmetric-logarithmic (linear within +-`linear_width`)."""
+    """A map from numbers to 0..1, linear or symmetric-logarithmic.
+
+    Attributes:
+        lower, upper: the numbers that become 0 and 1, in the unit of what is drawn.
+        linear_width: the map is linear within plus or minus this; None makes it linear throughout.
+    """
 
     lower: float
     upper: float
@@ -26,6 +31,7 @@ class Scale:
         return math.copysign(math.log10(1.0 + abs(value) / self.linear_width), value)
 
     def __call__(self, value: float) -> float:
+        """Where a number lies: 0 at `lower`, 1 at `upper`."""
         low, high = self._bend(self.lower), self._bend(self.upper)
         return (self._bend(value) - low) / (high - low)
 
@@ -74,7 +80,12 @@ def tick_text(value: float) -> str:
 
 @dataclass(frozen=True)
 class Frame:
-    """A plot's box in an SVG drawing (pixels) with a scale on each axis."""
+    """A plot's box in an SVG drawing.
+
+    Attributes:
+        left, top, width, height: of the box, pixels.
+        x_scale, y_scale: from numbers to shares of its width and height.
+    """
 
     left: float
     top: float

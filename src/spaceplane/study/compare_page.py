@@ -34,7 +34,15 @@ img{max-width:100%;background:#fff;border-radius:6px}ul{padding-left:1.2rem}
 
 @dataclass(frozen=True)
 class Table:
-    """One table of a comparison: heading (of level 2 or 3), a line on what it shows, columns and rows of text."""
+    """One table of a comparison.
+
+    Attributes:
+        title: heading.
+        level: of the heading, 2 or 3.
+        note: a line on what the table shows.
+        columns: headings.
+        rows: texts, one for each column.
+    """
 
     title: str
     level: int

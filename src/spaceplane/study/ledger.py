@@ -19,7 +19,23 @@ ATTEMPTS = 2  # a case that killed its worker this often is given up
 
 @dataclass
 class Ledger:
-    """Which cases wait, run, are done or failed."""
+    """Which cases wait, run, are done or failed. Cases go by their key, see `keys.result_key`.
+
+    Attributes:
+        cases: key to case.
+        store: where results are kept.
+        progress: told on every change.
+        workers: processes that compute at once.
+        queue: keys that wait.
+        running: key to the time (`time.monotonic`, s) at which it was begun.
+        failures: key to what went wrong.
+        attempts: key to how often a worker died at it.
+        durations: s, of finished cases, those found in the store included.
+        reused: cases found in the store at the beginning.
+        computed: cases computed since.
+        done: both together, and those that other processes finished meanwhile.
+        began: time (`time.monotonic`, s) of the beginning.
+    """
 
     cases: dict[str, Case]
     store: ResultStore
@@ -59,7 +75,7 @@ class Ledger:
         )
 
     def begun(self) -> float:
-        """How much of the running cases is done, in cases, as the time of those before them tells."""
+        """Share of the running cases that is done, in cases, as the time of those before them tells."""
         if not self.durations:
             return 0.0
         mean = sum(self.durations) / len(self.durations)
@@ -106,7 +122,11 @@ class Ledger:
 
 
 def enter(ledger: Ledger, answer: Answer) -> bool:
-    """Write an answer into the ledger; False when the case waits for another process."""
+    """Write an answer into the ledger; False when the case waits for another process.
+
+    Raises:
+        InputError: the worker cannot use the store.
+    """
     if answer.verdict == "store":
         raise InputError(answer.reason)
     if answer.verdict == "done":

@@ -44,7 +44,13 @@ class Progress:
 
 @dataclass(frozen=True)
 class Failure:
-    """A case without a result: its label, one line on why, and the traceback where the program is to blame."""
+    """A case without a result.
+
+    Attributes:
+        label: of the case.
+        reason: one line on why.
+        traceback: where the program is to blame; else empty.
+    """
 
     label: str
     reason: str
@@ -72,7 +78,16 @@ class Outcome:
 
 @dataclass(frozen=True)
 class Answer:
-    """What a worker reports of one case: "done", "found", "busy", "failed" or "store" (the store cannot be used)."""
+    """What a worker reports of one case.
+
+    Attributes:
+        key: of the case.
+        verdict: "done", "found" (another process was first), "busy" (another one is at it), "failed" or "store" (the
+            store cannot be used).
+        seconds: it took, s.
+        reason: why it failed.
+        traceback: where the program is to blame.
+    """
 
     key: str
     verdict: str

@@ -13,7 +13,13 @@ _HISTORIES = ("residual_history", "force_history")
 
 @dataclass(frozen=True)
 class ParameterRange:
-    """Default and limits of one shape parameter, in its `unit` (m or deg)."""
+    """What a study may do with one shape parameter.
+
+    Attributes:
+        default: value of the vehicle, in `unit`.
+        lower, upper: limits, in `unit`.
+        unit: m, deg or 1.
+    """
 
     default: float
     lower: float
@@ -22,7 +28,15 @@ class ParameterRange:
 
 
 def parameter_ranges(vehicle: str, changes: Mapping[str, float]) -> dict[str, ParameterRange]:
-    """Return the range of every shape parameter, `changes` being part of the default."""
+    """Return name -> range of every shape parameter.
+
+    Args:
+        vehicle: name of a preset, or a vehicle's YAML file.
+        changes: values, m or deg, that are part of the default.
+
+    Raises:
+        InputError: an unknown vehicle or parameter.
+    """
     from spaceplane.vehicle import presets
 
     shape = presets.load(vehicle, dict(changes), allow_outside=True).shape.as_dict()

@@ -22,7 +22,14 @@ from spaceplane.study.store import ResultStore
 
 
 def compute(store: ResultStore, key: str, case: Case, evaluate: Evaluate) -> Answer:
-    """Claim, compute and store one case."""
+    """Claim, compute and store one case.
+
+    Args:
+        store: where the result goes.
+        key: name of the result.
+        case: what to compute.
+        evaluate: from the case's inputs to the result.
+    """
     if not store.claim(key):
         return Answer(key, "found" if store.finished([key]) else "busy")
     with store.holding(key):
@@ -72,7 +79,11 @@ class Crew:
         return True
 
     def answers(self, timeout_s: float) -> Iterator[tuple[str, Answer | None]]:
-        """Yield (key, answer), with None for the answer of a worker that died."""
+        """Yield (key, answer), with None for the answer of a worker that died.
+
+        Args:
+            timeout_s: how long to wait for the first of them, s.
+        """
         busy = [connection for connection, (_, key) in self._workers.items() if key is not None]
         if not busy:
             time.sleep(timeout_s)

@@ -15,6 +15,9 @@ def stagnation_cp(mach: float, gamma: float = 1.4) -> float:
     """Pressure coefficient at a stagnation point: isentropic below Mach 1, Rayleigh's pitot formula above.
 
     Source: NACA Report 1135 (1953), equations 44 and 100.
+
+    Raises:
+        InputError: a Mach number of 0 or below.
     """
     if not mach > 0.0:
         raise InputError(f"mach = {mach}: a positive number is needed")
@@ -31,6 +34,9 @@ def standoff_billig(mach: float) -> float:
     """Shock stand-off distance over the radius of a sphere, gamma 1.4.
 
     Source: Billig, "Shock-wave shapes around spherical- and cylindrical-nosed bodies", J. Spacecraft 4 (1967).
+
+    Raises:
+        InputError: a Mach number of 1 or below.
     """
     if not mach > 1.0:
         raise InputError(f"mach = {mach}: a bow shock needs a Mach number above 1")

@@ -24,6 +24,9 @@ def revolve(profile: np.ndarray, segments: int, base_from: int | None = None) ->
     Returns:
         A surface with parts `forebody` and `base`. Its facets are inscribed: the enclosed area of each section is
         smaller than the circle's by the factor sin(2 pi / segments) / (2 pi / segments).
+
+    Raises:
+        InputError: a profile that does not begin and end on the axis, or too few segments.
     """
     profile = np.asarray(profile, float)
     if profile[0, 1] != 0.0 or profile[-1, 1] != 0.0 or np.any(profile[1:-1, 1] <= 0.0):

@@ -99,7 +99,14 @@ def conditions(lateral: bool) -> FlowConditions:
 def coefficients(
     vehicle: Vehicle, configuration: Configuration, cell: float, progress: Progress | None = None
 ) -> xr.Dataset:
-    """Total coefficients on the grid of the tables; wall `cell` m. An unconverged condition has NaN."""
+    """Total coefficients on the grid of the tables. An unconverged condition has NaN.
+
+    Args:
+        vehicle: shape and reference lengths.
+        configuration: of the controls.
+        cell: wall cell, m.
+        progress: see `flowcase.solve_body`.
+    """
     surface = build(vehicle.shape, ControlDeflections.from_degrees(**configuration.deflections_deg))
     solution = solve_body(surface, MeshSettings(wall_cell=cell), conditions(lateral=configuration is CLEAN), progress)
     total = integrate(solution, vehicle.reference).sel(part="total")

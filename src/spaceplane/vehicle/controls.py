@@ -34,8 +34,11 @@ CONTROLS: tuple[str, ...] = tuple(CONTROL_LIMITS_DEG)
 class ControlDeflections:
     """Deflections of the five control surfaces, rad.
 
-    Elevons and body flap are positive with the trailing edge down, each rudder with its trailing edge outboard.
     Limits: `CONTROL_LIMITS_DEG`.
+
+    Attributes:
+        elevon_left, elevon_right, body_flap: positive with the trailing edge down.
+        rudder_left, rudder_right: positive with the trailing edge outboard.
 
     Raises:
         InputError: a deflection is not a finite number.

@@ -52,7 +52,7 @@ class Hinge:
     open_end: bool = False
 
     def place(self, d: np.ndarray, t: np.ndarray, h: np.ndarray) -> np.ndarray:
-        """Points from distances behind, along and above the axis."""
+        """[..., xyz] m, points at distances d behind, t along and h above the axis, m."""
         return self.origin + d[..., None] * self.aft + t[..., None] * self.along + h[..., None] * self.up
 
 
@@ -136,7 +136,11 @@ def _frame(
 
 
 def elevon_hinge(layout: Layout) -> Hinge:
-    """Right elevon; its inboard end is slanted so that it clears the fuselage when it is up."""
+    """Right elevon; its inboard end is slanted so that it clears the fuselage when it is up.
+
+    Raises:
+        GeometryError: the flap does not fit into the part that carries it.
+    """
     q_in = ELEVON_ROOT_GAP / np.cos(layout.dihedral)
     q_out = layout.panel_length - layout.bend_tangent - CORNER_GAP
     axis, trailing, up, radius = _panel_hinge(layout, (q_in, q_out), layout.shape.elevon_length_m)
@@ -157,7 +161,11 @@ def elevon_hinge(layout: Layout) -> Hinge:
 
 
 def rudder_hinge(layout: Layout) -> Hinge:
-    """Right rudder, from above the corner to the winglet's tip; both ends along the flow."""
+    """Right rudder, from above the corner to the winglet's tip; both ends along the flow.
+
+    Raises:
+        GeometryError: the flap does not fit into the part that carries it.
+    """
     thick = layout.shape.wing_thickness_m * TIP_THICKNESS_RATIO
     ends = (layout.panel_length + layout.shape.rudder_height_bottom_m, layout.q_tip - 0.25 * thick)
     if ends[1] - ends[0] < 0.3:
@@ -175,7 +183,11 @@ def rudder_hinge(layout: Layout) -> Hinge:
 
 
 def body_flap_hinge(layout: Layout) -> Hinge:
-    """Body flap below the base; its knuckle is sunk into the base and follows the curved underside."""
+    """Body flap below the base; its knuckle is sunk into the base and follows the curved underside.
+
+    Raises:
+        GeometryError: the flap does not fit into the part that carries it.
+    """
     s = layout.shape
     half_width = 0.5 * s.body_flap_width_m
     if half_width > layout.chine - 0.295:

@@ -49,22 +49,22 @@ class Layout:
 
     @property
     def x_base(self) -> float:
-        """Station of the base."""
+        """Station of the base, m."""
         return self.shape.nosecone_length_m + self.shape.fuselage_length_m
 
     @property
     def chine(self) -> float:
-        """Half-width of the fuselage at the chine."""
+        """Half-width of the fuselage at the chine, m."""
         return self.shape.fuselage_width_m + self.shape.fuselage_flare_m
 
     def underside(self, y: float | np.ndarray) -> float | np.ndarray:
-        """Height of the fuselage's underside above the keel."""
+        """Height of the fuselage's underside above the keel, m, at y, m."""
         s = self.shape
         return s.fuselage_bottom_curvature_height_m * (y / s.fuselage_bottom_curvature_width_m) ** 2
 
     @property
     def section_height(self) -> float:
-        """Height of the constant section, keel to crown."""
+        """Height of the constant section, keel to crown, m."""
         s = self.shape
         return float(self.underside(self.chine)) + s.fuselage_height_m + s.fuselage_crown_ratio * s.fuselage_width_m
 
@@ -75,7 +75,7 @@ class Layout:
 
     @property
     def z_nose(self) -> float:
-        """Height of the nose tip above the reference axis."""
+        """Height of the nose tip above the reference axis, m."""
         return self.shape.nosecone_height_m - KEEL_DEPTH
 
     @cached_property
@@ -84,6 +84,9 @@ class Layout:
 
         The lines are z = z1 - (z1 - z0) (1 - xi)^n: tangent at both ends and without a dip for any n; n >= 2 keeps
         the curvature finite at the constant section, which fixes the join angle.
+
+        Raises:
+            GeometryError: the nose's sphere is too large for the fuselage.
         """
         s = self.shape
         radius, length = s.nose_radius_m, s.nosecone_length_m
@@ -109,19 +112,19 @@ class Layout:
 
     @property
     def dihedral(self) -> float:
-        """Dihedral of the wing panel: chord of the underside parabola between chine and corner."""
+        """Dihedral of the wing panel, rad: chord of the underside parabola between chine and corner."""
         s = self.shape
         rise = float(self.underside(self.chine + s.wing_width_m) - self.underside(self.chine))
         return float(np.arctan2(rise, s.wing_width_m))
 
     @property
     def winglet_elevation(self) -> float:
-        """Angle of the winglet's span direction above the horizontal."""
+        """Angle of the winglet's span direction above the horizontal, rad."""
         return float(np.pi / 2 - np.radians(self.shape.winglet_angle_deg))
 
     @property
     def panel_length(self) -> float:
-        """q of the corner."""
+        """q of the corner, m."""
         return self.shape.wing_width_m / float(np.cos(self.dihedral))
 
     @property
@@ -131,7 +134,11 @@ class Layout:
 
     @cached_property
     def bend_tangent(self) -> float:
-        """Distance from the corner to where the bend begins; the bend must end below the rudder."""
+        """Distance from the corner to where the bend begins, m; the bend must end below the rudder.
+
+        Raises:
+            GeometryError: the winglet lies in the wing's plane.
+        """
         turn = self.winglet_elevation - self.dihedral
         if turn <= np.radians(5):
             raise GeometryError(
@@ -167,19 +174,19 @@ class Layout:
 
     @property
     def x_corner(self) -> float:
-        """Trailing edge at the corner."""
+        """Station of the trailing edge at the corner, m."""
         return self.x_base + self.shape.wing_width_m * float(np.tan(np.radians(self.shape.trailing_edge_sweep_deg)))
 
     @property
     def trailing_slopes(self) -> tuple[float, float]:
-        """dx/dq of the trailing edge on wing and winglet."""
+        """dx/dq of the trailing edge on wing and winglet, a ratio."""
         s = self.shape
         wing = np.tan(np.radians(s.trailing_edge_sweep_deg)) * np.cos(self.dihedral)
         return float(wing), float(np.tan(np.radians(s.winglet_angle_back_deg)))
 
     @cached_property
     def x_apex(self) -> float:
-        """Strake apex at the chine: not ahead of where the nosecone has 97 % of its final width."""
+        """Station of the strake apex at the chine, m: not ahead of where the nosecone has 97 % of its final width."""
         s, nose = self.shape, self.nose
         spread = (0.03 * self.chine / (self.chine - nose.r_join)) ** (1 / nose.exponents[2])
         x_wide = s.nosecone_length_m - (s.nosecone_length_m - nose.x_join) * min(spread, 1.0)
@@ -219,29 +226,32 @@ class Layout:
         return q, _rounded(leading, KINK_BLEND), _rounded(trailing, CORNER_BLEND), hinge
 
     def leading_edge(self, q: np.ndarray) -> np.ndarray:
-        """x of the leading edge, kinks rounded."""
+        """[station] x of the leading edge at q, m, kinks rounded."""
         return np.interp(q, self._edges[0], self._edges[1])
 
     def leading_slope(self, q: np.ndarray) -> np.ndarray:
-        """dx/dq of the leading edge."""
+        """[station] dx/dq of the leading edge, a ratio, at q, m."""
         return (self.leading_edge(q + 0.02) - self.leading_edge(q - 0.02)) / 0.04
 
     def trailing_edge(self, q: np.ndarray) -> np.ndarray:
-        """x of the trailing edge."""
+        """[station] x of the trailing edge at q, m."""
         return np.interp(q, self._edges[0], self._edges[2])
 
     def hinge_offset(self, q: np.ndarray) -> np.ndarray:
-        """Distance along x from the hinge line to the trailing edge."""
+        """[station] distance along x from the hinge line to the trailing edge at q, m."""
         return np.interp(q, self._edges[0], self._edges[3])
 
     def thickness(self, q: np.ndarray) -> np.ndarray:
-        """Largest thickness of the section."""
+        """[station] largest thickness of the section at q, m."""
         s, lp = self.shape, self.panel_length
         thick = s.wing_thickness_m
         return np.interp(q, [0.0, lp, self.q_tip], [s.wing_root_thickness_m, thick, TIP_THICKNESS_RATIO * thick])
 
     def hinge_thickness(self, q: np.ndarray) -> np.ndarray:
-        """Thickness at the hinge: constant along the wing, linear along the winglet, so that hinges are straight."""
+        """[station] thickness at the hinge at q, m.
+
+        Constant along the wing and linear along the winglet, so that hinges are straight.
+        """
         return HINGE_THICKNESS_RATIO * np.minimum(self.thickness(q), self.shape.wing_thickness_m)
 
 

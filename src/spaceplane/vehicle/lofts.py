@@ -28,7 +28,7 @@ class Shell:
 
 
 def oriented(points: np.ndarray, triangles: np.ndarray) -> Shell:
-    """Shell with the triangles turned so that the enclosed volume is positive."""
+    """Shell of points [vertex, xyz], m, with triangles [triangle, 3] turned so that the enclosed volume is positive."""
     c = points[triangles] - points.mean(axis=0)
     volume = np.einsum("ij,ij->", c[:, 0], np.cross(c[:, 1], c[:, 2]))
     return Shell(points, triangles if volume > 0 else triangles[:, ::-1])

@@ -53,7 +53,7 @@ def draw(pyvista, surface: Surface, path: Path, views: tuple[str, ...], size: tu
 
 
 def part_meshes(pyvista, surface: Surface) -> list[tuple[str, object]]:
-    """Name and shaded mesh of every part."""
+    """Name and shaded mesh (`pyvista.PolyData`, m) of every part."""
     meshes = []
     for index, name in enumerate(surface.part_names):
         triangles = surface.triangles[surface.part == index]

@@ -116,5 +116,11 @@ def scaled_reference(
     station: float = MOMENT_CENTER_STATION,
     height: float = MOMENT_CENTER_HEIGHT,
 ) -> ReferenceLengths:
-    """Reference lengths of a changed shape: area, chord and span stay, the moment centre (m) moves."""
+    """Reference lengths of a changed shape: area, chord and span stay, the moment centre (m) moves.
+
+    Args:
+        shape: the changed shape.
+        base: area m2, chord m and span m of the default shape.
+        station, height: moment centre of the default shape, m, see `scaled_moment_center`.
+    """
     return replace(base, moment_center=scaled_moment_center(shape, station, height))

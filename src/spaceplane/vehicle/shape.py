@@ -142,7 +142,7 @@ class ShapeParameters:
         return tuple(i.name for i in PARAMETERS if not i.lower <= getattr(self, i.name) <= i.upper)
 
     def as_dict(self) -> dict[str, float]:
-        """Parameter values by name."""
+        """Parameter values by name, each in the unit (m, deg or 1) that its name ends in."""
         return asdict(self)
 
 
