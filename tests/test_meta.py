@@ -22,6 +22,7 @@ TREES = {name: ast.parse(path.read_text(encoding="utf-8")) for name, path in MOD
 # A stage knows only the ones before it. `environment` knows nobody but the constants and may be known by any.
 ORDER = (
     "errors",
+    "files",
     "kernelcache",
     "plain",
     "environment",

@@ -19,8 +19,9 @@ from spaceplane.aero.integrate import integrate
 from spaceplane.analysis.flight import fly
 from spaceplane.analysis.found import Analysis, remarks
 from spaceplane.analysis.settings import AnalyseSettings
+from spaceplane.files import writable_folder
 from spaceplane.flow.solution import FlowConditions
-from spaceplane.report.output import check_output, write
+from spaceplane.report.output import write
 from spaceplane.vehicle.controls import CONTROLS, ControlDeflections
 from spaceplane.vehicle.presets import Vehicle
 
@@ -119,7 +120,7 @@ def run(vehicle: Vehicle, settings: AnalyseSettings, out_dir: Path | str, progre
     Raises:
         InputError: as `analyse`, or the folder cannot be written.
     """
-    folder = check_output(out_dir)
+    folder = writable_folder(out_dir)
     analysis = analyse(vehicle, settings, progress)
     if progress:
         progress("report", 0, 1, str(folder))

@@ -50,7 +50,7 @@ def test_file_and_changes_are_taken(tmp_path):
         ("workers: 0", "greater than or equal to 1"),
         ("study: tarot", "allowed: sensitivity"),
         ("parameters: []", "at least one"),
-        ("- 1\n- 2", "must hold fields"),
+        ("- 1\n- 2", "must hold keys"),
         ("mach: [1,", "not YAML at line"),
     ],
 )
@@ -61,7 +61,7 @@ def test_bad_files_are_refused_in_one_line(tmp_path, text, message):
 
 
 def test_missing_file(tmp_path):
-    with pytest.raises(InputError, match="cannot be read"):
+    with pytest.raises(InputError, match="does not exist"):
         load_study(tmp_path / "none.yaml")
 
 

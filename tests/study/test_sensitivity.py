@@ -107,7 +107,7 @@ def test_a_default_without_result_ends_the_study(quick, tmp_path):
 
 def test_output_folder_that_cannot_be_made(quick, tmp_path):
     (tmp_path / "out").touch()
-    with pytest.raises(InputError, match="output folder"):
+    with pytest.raises(InputError, match="a folder is needed"):
         run(tmp_path)
 
 

@@ -137,7 +137,7 @@ def test_yaml_file_with_overrides(tmp_path):
         ("shape: {wing_width_m: 9}", "wing_width_m = 9 m: allowed 2.8 to 3.9"),
         ("base: horus-2c", "unknown vehicle preset 'horus-2c': did you mean 'horus-2b'"),
         ("- 1\n- 2", "must hold keys"),
-        ("shape: {a: [", "not valid YAML"),
+        ("shape: {a: [", "not YAML at line"),
         ("reference: {area_m2: 0}", "area = 0: must be positive"),
     ],
 )

@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from spaceplane.commands import options
-from spaceplane.commands.arguments import mach_numbers, numbers, writable_file, writable_folder, write_json
+from spaceplane.commands.arguments import mach_numbers, numbers, writable_file, write_json
 from spaceplane.commands.progress import progress_bar
 from spaceplane.errors import InputError
+from spaceplane.files import writable_folder
 
 if TYPE_CHECKING:
     from spaceplane.pipeline import AnalyseSettings
@@ -71,7 +72,7 @@ def analyse(
     settings = replace(
         settings, form=form, vehicle_class=vehicle_class, category=category, controls=controls, steps=steps
     )
-    writable_folder(folder)
+    writable_folder(folder, "--out")
     writable_file(json_file, "--json")
     from spaceplane import pipeline
     from spaceplane.report.read import read_result

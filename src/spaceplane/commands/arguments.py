@@ -1,16 +1,16 @@
-"""Text from the command line to values, and folders that can be written."""
+"""Text from the command line to values, and files that can be read or written."""
 
 from __future__ import annotations
 
 import math
 import os
 import sys
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from itertools import pairwise
 from pathlib import Path
 
 from spaceplane.errors import InputError
+from spaceplane.files import json_text, writable_folder, write_text
 
 ASSIGNING = ("--set", "--deflect")
 PLACES = ("--out", "--json", "--vtu", "--vtp", "--store")
@@ -149,24 +149,6 @@ def existing_file(path: Path, what: str) -> Path:
     return path
 
 
-def writable_folder(path: Path, option: str = "--out") -> Path:
-    """Make `path` as a folder and try to write in it, before anything is computed.
-
-    Raises:
-        InputError: it cannot be made or written.
-    """
-    if path.exists() and not path.is_dir():
-        raise InputError(f"{option}: {path} is a file, a folder is needed")
-    probe = path / f".spaceplane-{os.getpid()}"
-    try:
-        path.mkdir(parents=True, exist_ok=True)
-        probe.write_bytes(b"")
-        probe.unlink()
-    except OSError as error:
-        raise InputError(f"{option}: {path} cannot be written ({error.strerror})") from error
-    return path
-
-
 def writable_file(path: Path | None, option: str, suffixes: Sequence[str] = ()) -> Path | None:
     """`path` when it can be written (its folder is made); `None` and `-` (standard output) pass.
 
@@ -185,29 +167,14 @@ def writable_file(path: Path | None, option: str, suffixes: Sequence[str] = ()) 
     return path
 
 
-@contextmanager
-def renamed_when_done(path: Path) -> Iterator[Path]:
-    """A name beside `path` to write to; it takes `path`'s place only when the block ends well."""
-    partial = path.with_name(f".{path.stem}-{os.getpid()}{path.suffix}")
-    try:
-        yield partial
-        partial.replace(path)
-    finally:
-        partial.unlink(missing_ok=True)
-
-
 def write_json(record: object, path: Path | None) -> None:
     """Write `record` as JSON to `path`, or to standard output for `-`; nothing for None."""
-    import json
-
     if path is None:
         return
-    text = json.dumps(record, indent=1, allow_nan=False, ensure_ascii=False) + "\n"
     if str(path) == "-":
-        sys.stdout.write(text)
-        return
-    with renamed_when_done(path) as partial:
-        partial.write_text(text, encoding="utf-8")
+        sys.stdout.write(json_text(record))
+    else:
+        write_text(json_text(record), path)
 
 
 def _of(unit: str) -> str:

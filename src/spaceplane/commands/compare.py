@@ -8,9 +8,10 @@ from typing import Annotated
 import typer
 
 from spaceplane.commands import options
-from spaceplane.commands.arguments import positive, writable_file, writable_folder, write_json
+from spaceplane.commands.arguments import positive, writable_file, write_json
 from spaceplane.commands.progress import progress_bar
 from spaceplane.errors import InputError
+from spaceplane.files import writable_folder
 
 EXAMPLE = "Example: spaceplane compare out/default/result.json out/wide/result.json --json compare.json"
 
@@ -39,7 +40,7 @@ def compare(
     writable_file(json_file, "--json")
     folder = Path("out/compare") if first is None and out is None else out
     if folder is not None:
-        writable_folder(folder)
+        writable_folder(folder, "--out")
     comparison = _computed(folder, cells, workers) if first is None else _read(first, second)
     from spaceplane.study import compare_page
 
@@ -72,5 +73,7 @@ def _computed(folder: Path, cells: str | None, workers: int) -> dict:
         def on_change(p) -> None:
             tell(f"{p.done} of {p.total} shapes: {', '.join(p.running)}", p.fraction)
 
-        compile_kernels(tell)  # here and once, not in every worker
-        return default_against_optimised(folder / "store.sqlite", on_change, workers, settings)
+        def compile_once() -> None:  # here, not in every worker
+            compile_kernels(tell)
+
+        return default_against_optimised(folder / "store.sqlite", on_change, workers, settings, before=compile_once)

@@ -8,8 +8,9 @@ from typing import Annotated
 import typer
 
 from spaceplane.commands import options
-from spaceplane.commands.arguments import writable_file, writable_folder, write_json
+from spaceplane.commands.arguments import writable_file, write_json
 from spaceplane.errors import InputError
+from spaceplane.files import writable_folder
 
 EXAMPLE = "Example: spaceplane export csv out/horus-2b --out tables"
 FORMATS = ("csv", "netcdf")
@@ -30,7 +31,7 @@ def export(
     from spaceplane.report.tables import write_csv, write_netcdf
 
     result = read_result(folder)
-    target = writable_folder(out or folder)
+    target = writable_folder(out or folder, "--out")
     writable_file(json_file, "--json")
     files = write_csv(result, target) if form == "csv" else write_netcdf(result, target)
     write_json({"files": [str(path) for path in files]}, json_file)

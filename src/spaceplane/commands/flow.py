@@ -15,12 +15,12 @@ from spaceplane.commands.arguments import (
     mach_numbers,
     numbers,
     positive,
-    renamed_when_done,
     writable_file,
     write_json,
 )
 from spaceplane.commands.progress import progress_bar
 from spaceplane.errors import InputError
+from spaceplane.files import renamed_when_done
 
 if TYPE_CHECKING:
     from spaceplane.aero.flow_case import FlowCase

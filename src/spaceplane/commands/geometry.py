@@ -8,7 +8,8 @@ from typing import Annotated
 import typer
 
 from spaceplane.commands import options
-from spaceplane.commands.arguments import renamed_when_done, writable_file, write_json
+from spaceplane.commands.arguments import writable_file, write_json
+from spaceplane.files import renamed_when_done
 
 EXAMPLE = "Example: spaceplane geometry horus-2b --set winglet_length_m=4 --deflect elevon_left=-10 --out body.stl"
 SUFFIXES = (".stl", ".glb", ".step", ".stp", ".png")

@@ -8,7 +8,8 @@ from typing import Annotated
 import typer
 
 from spaceplane.commands import options
-from spaceplane.commands.arguments import writable_file, writable_folder, write_json
+from spaceplane.commands.arguments import writable_file, write_json
+from spaceplane.files import writable_folder
 
 EXAMPLE = "Example: spaceplane report out/horus-2b"
 

@@ -8,9 +8,10 @@ from typing import Annotated
 import typer
 
 from spaceplane.commands import options
-from spaceplane.commands.arguments import existing_file, writable_file, writable_folder, write_json
+from spaceplane.commands.arguments import existing_file, writable_file, write_json
 from spaceplane.commands.progress import progress_bar
 from spaceplane.errors import InputError
+from spaceplane.files import writable_folder
 
 EXAMPLE = "Example: spaceplane study sensitivity examples/sensitivity.yaml --out out/sensitivity --workers 2"
 
@@ -48,7 +49,7 @@ def sensitivity(
         existing_file(file, "a study's YAML file")
     if workers is not None and workers < 1:
         raise InputError(f"--workers: {workers}, must be at least 1")
-    writable_folder(out)
+    writable_folder(out, "--out")
     writable_file(json_file, "--json")
     store_path = store or out / "store.sqlite"
     if not resume and store_path.exists():
@@ -64,8 +65,10 @@ def sensitivity(
             left = "" if p.remaining_s is None else f", about {p.remaining_s / 60:.0f} min left"
             tell(f"{p.done} of {p.total} shapes ({p.reused} from the store){left}", p.fraction)
 
-        compile_kernels(tell)  # here and once, not in every worker
-        found = study.run(asked, store_path, out, on_change, workers, plots=plots)
+        def compile_once() -> None:  # here, not in every worker
+            compile_kernels(tell)
+
+        found = study.run(asked, store_path, out, on_change, workers, plots=plots, before=compile_once)
     if json_file is not None:
         import json
 

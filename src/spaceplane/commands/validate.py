@@ -8,8 +8,9 @@ from typing import Annotated
 import typer
 
 from spaceplane.commands import options
-from spaceplane.commands.arguments import writable_file, writable_folder, write_json
+from spaceplane.commands.arguments import writable_file, write_json
 from spaceplane.commands.progress import progress_bar
+from spaceplane.files import writable_folder
 
 EXAMPLE = "Example: spaceplane validate cones sphere --out out/validation"
 
@@ -28,7 +29,7 @@ def validate(
 ) -> int:
     """Run validation cases; exit code 1 when a gating value lies outside its band."""
     if out is not None:
-        writable_folder(out)
+        writable_folder(out, "--out")
     writable_file(json_file, "--json")
     from spaceplane import validation
     from spaceplane.validation.records import as_dict

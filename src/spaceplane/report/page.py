@@ -6,6 +6,7 @@ import base64
 import json
 from pathlib import Path
 
+from spaceplane.files import write_text
 from spaceplane.report import sections
 from spaceplane.report.numbers import fixed
 from spaceplane.report.picture import COLOUR_STOPS, stills
@@ -36,9 +37,7 @@ def write_report(out_dir: Path) -> Path:
     surface_path = out_dir / "surface.vtp"
     surface = read_surface(surface_path) if surface_path.is_file() else None
     path = out_dir / "report.html"
-    partial = path.with_suffix(".html.partial")
-    partial.write_text(render(result, surface), encoding="utf-8")
-    partial.replace(path)
+    write_text(render(result, surface), path)
     return path
 
 

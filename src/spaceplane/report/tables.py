@@ -8,6 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
+from spaceplane.files import renamed_when_done
+
 CONDITION_KEYS = (
     "mach",
     "altitude_m",
@@ -99,12 +101,10 @@ def write_csv(result: dict, folder: Path) -> list[Path]:
     for name, rows in TABLES.items():
         path = folder / f"{name}.csv"
         found = rows(result)
-        partial = path.with_suffix(".csv.partial")
-        with partial.open("w", newline="", encoding="utf-8") as file:
+        with renamed_when_done(path) as partial, partial.open("w", newline="", encoding="utf-8") as file:
             writer = csv.DictWriter(file, _columns(found), restval="")
             writer.writeheader()
             writer.writerows({k: "" if v is None else v for k, v in row.items()} for row in found)
-        partial.replace(path)
         paths.append(path)
     return paths
 
@@ -148,9 +148,8 @@ def write_netcdf(result: dict, folder: Path) -> list[Path]:
     attributes = {"source": f"spaceplane {result.get('version')}", "created": result.get("created") or ""}
     data = xr.Dataset(variables, {"flight_point": points, "part": parts, **conditions}, attributes)
     path = folder / "tables.nc"
-    partial = path.with_suffix(".nc.partial")
-    data.to_netcdf(partial)
-    partial.replace(path)
+    with renamed_when_done(path) as partial:
+        data.to_netcdf(partial)
     return [path]
 
 

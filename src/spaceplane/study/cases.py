@@ -5,10 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-import yaml
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
 from spaceplane.errors import InputError, unknown_name
+from spaceplane.files import read_yaml
 
 BASE_PARAMETERS = (
     "fuselage_width_m",
@@ -101,7 +101,7 @@ def load_study(path: Path | str | None = None, **changes: object) -> Sensitivity
     Raises:
         InputError: the file cannot be read, or a field is unknown or has a value that is not allowed.
     """
-    fields = {} if path is None else _read(Path(path))
+    fields = {} if path is None else read_yaml(path, "study file")
     fields.update({name: value for name, value in changes.items() if value is not None})
     where = "study" if path is None else str(path)
     try:
@@ -109,25 +109,6 @@ def load_study(path: Path | str | None = None, **changes: object) -> Sensitivity
     except ValidationError as error:
         raise InputError(f"{where}: {_first(error)}") from error
     return study
-
-
-def _read(path: Path) -> dict:
-    try:
-        text = path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        reason = getattr(error, "strerror", None) or "not a text file"
-        raise InputError(f"study file {path}: cannot be read ({reason})") from error
-    try:
-        fields = yaml.safe_load(text)
-    except yaml.YAMLError as error:
-        mark = getattr(error, "problem_mark", None)
-        line = f" at line {mark.line + 1}" if mark else ""
-        raise InputError(f"study file {path}: not YAML{line} ({getattr(error, 'problem', error)})") from error
-    if fields is None:
-        return {}
-    if not isinstance(fields, dict):
-        raise InputError(f"study file {path}: must hold fields (name: value), has {type(fields).__name__}")
-    return fields
 
 
 def _first(error: ValidationError) -> str:

@@ -40,6 +40,7 @@ def default_against_optimised(
     vehicle: str = "horus-2b",
     mach: tuple[float, ...] = HYPERSONIC_CHECK_MACH,
     evaluate: Evaluate = evaluate,
+    before: Callable[[], object] | None = None,
 ) -> dict:
     """Compare a vehicle with the thesis's optimised shape of it, computing what the store lacks.
 
@@ -51,6 +52,7 @@ def default_against_optimised(
         vehicle: name of a preset, or a vehicle's YAML file.
         mach: flight points.
         evaluate: from a case's inputs to a result as in result.json; the pipeline by default.
+        before: called once, when the store has been checked and before anything is computed.
 
     Returns:
         A comparison, see `compare`, with the thesis's derivatives beside ours where it prints them.
@@ -61,6 +63,8 @@ def default_against_optimised(
     from spaceplane.vehicle.presets import OPTIMISED_SHAPE
 
     ResultStore(store_path).close()  # a store that cannot be used is told before anything is meshed
+    if before:
+        before()
     settings = with_one_wall_cell(vehicle, {}, settings or {})
     cases = [
         Case(label, case_inputs(vehicle, changes, mach, settings))

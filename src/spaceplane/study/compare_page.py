@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import html
-import json
 import math
-import os
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from spaceplane.errors import InputError
+from spaceplane.files import json_text, told, write_text
 
 BETTER, WORSE = "better", "worse"
 
@@ -121,22 +119,18 @@ def write(comparison: dict, out_dir: Path | str) -> dict[str, Path]:
     folder = Path(out_dir)
     figure = eigenvalue_plot(comparison)
     paths = {kind: folder / f"compare.{kind}" for kind in ("json", "md", "html", "png", "svg")}
-    try:
+    with told(folder):
         folder.mkdir(parents=True, exist_ok=True)
         figure.savefig(paths["png"], bbox_inches="tight", dpi=110)
         figure.savefig(paths["svg"], bbox_inches="tight")
         svg = paths["svg"].read_text(encoding="utf-8")
         texts = {
-            "json": json.dumps(comparison, indent=1, allow_nan=False, ensure_ascii=False) + "\n",
+            "json": json_text(comparison),
             "md": as_markdown(comparison, paths["png"].name),
             "html": as_html(comparison, svg),
         }
         for kind, text in texts.items():
-            part = paths[kind].with_suffix(f".{kind}.part")
-            part.write_text(text, encoding="utf-8")
-            os.replace(part, paths[kind])
-    except OSError as error:
-        raise InputError(f"out: {folder} cannot be written ({error.strerror or error})") from error
+            write_text(text, paths[kind])
     return paths
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import json
 from collections.abc import Callable
 from dataclasses import dataclass
 from datetime import UTC, datetime
@@ -11,6 +10,7 @@ from pathlib import Path
 
 from spaceplane import __version__
 from spaceplane.errors import InputError, unknown_name
+from spaceplane.files import json_text, writable_folder, write_text
 from spaceplane.study import thesis
 from spaceplane.study.cases import SensitivityStudy
 from spaceplane.study.changes import Change, changes, mesh_noise
@@ -88,6 +88,7 @@ def run(
     workers: int | None = None,
     evaluate: Evaluate = evaluate,
     plots: bool = True,
+    before: Callable[[], object] | None = None,
 ) -> SensitivityResult:
     """Compute what the store lacks of a study, then write tables and plots.
 
@@ -99,15 +100,18 @@ def run(
         workers: processes that compute at once; the study's own number by default.
         evaluate: from a case's inputs to a result as in result.json; the pipeline by default.
         plots: draw the plots too.
+        before: called once, when the input has been checked and before anything is computed.
 
     Raises:
         InputError: an unknown parameter, a value out of limits, a damaged store, a folder that cannot be written, or
             the default shape itself has no result.
         KeyboardInterrupt: as `execute.execute`; run again to go on.
     """
-    out_dir = _folder(out_dir)
+    out_dir = writable_folder(out_dir)
     variations = plan(study)
     ResultStore(store_path).close()  # a store that cannot be used is told before anything is meshed
+    if before:
+        before()
     cases = _cases(study, variations)
     outcome = execute(cases, evaluate, store_path, progress, workers or study.workers)
     default = outcome.results[0]
@@ -187,7 +191,7 @@ def write_tables(found: SensitivityResult, out_dir: Path) -> dict[str, Path]:
     files = {name: out_dir / name for name in ("sensitivity.csv", "agreement.csv", "sensitivity.json")}
     _write_csv(files["sensitivity.csv"], [row.as_row() for row in found.rows])
     _write_csv(files["agreement.csv"], list(found.agreement))
-    files["sensitivity.json"].write_text(json.dumps(_document(found), indent=1, allow_nan=False), encoding="utf-8")
+    write_text(json_text(_document(found)), files["sensitivity.json"])
     return files
 
 
@@ -240,15 +244,6 @@ def _warnings(results: list[tuple[str, dict]]) -> tuple[str, ...]:
             if bad:
                 lines.append(f"{label}, Mach {point['mach']:g}: {', '.join(bad)}")
     return tuple(lines)
-
-
-def _folder(out_dir: Path | str) -> Path:
-    path = Path(out_dir)
-    try:
-        path.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(f"output folder {path}: cannot be made ({error.strerror})") from error
-    return path
 
 
 def _write_csv(path: Path, rows: list[dict]) -> None:

@@ -9,7 +9,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from spaceplane import __version__
-from spaceplane.errors import InputError
+from spaceplane.files import json_text, told, write_text
 
 
 @dataclass(frozen=True)
@@ -120,12 +120,10 @@ def write(records: Sequence[Record], folder: str | Path) -> tuple[Path, Path]:
         "records": [as_dict(record) for record in records],
     }
     json_path, page_path = folder / "validation.json", folder / "validation.md"
-    try:
+    with told(folder):
         folder.mkdir(parents=True, exist_ok=True)
-        json_path.write_text(json.dumps(document, indent=1, allow_nan=False) + "\n", encoding="utf-8")
-        page_path.write_text(markdown_page(records), encoding="utf-8")
-    except OSError as error:
-        raise InputError(f"out: cannot write the validation results to {folder} ({error.strerror})") from error
+        write_text(json_text(document), json_path)
+        write_text(markdown_page(records), page_path)
     return json_path, page_path
 
 

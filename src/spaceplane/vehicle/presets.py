@@ -9,6 +9,7 @@ from pathlib import Path
 from pydantic import BaseModel, ConfigDict, ValidationError
 
 from spaceplane.errors import InputError, unknown_name
+from spaceplane.files import read_yaml
 from spaceplane.vehicle.properties import (
     HORUS_MASS,
     HORUS_REFERENCE,
@@ -104,7 +105,7 @@ def load(
     if text in _PRESET_SHAPES:
         content = _VehicleFile(name=text, base=text)
     elif text.lower().endswith((".yaml", ".yml")):
-        content = _read_yaml(Path(text))
+        content = _validated(Path(text), read_yaml(text, "vehicle file"))
     elif Path(text).exists():
         raise InputError(f"vehicle '{text}': a vehicle file must end in .yaml or .yml")
     else:
@@ -138,24 +139,6 @@ def load(
         ),
         scaled_reference(shape, base, station, height),
     )
-
-
-def _read_yaml(path: Path) -> _VehicleFile:
-    import yaml
-
-    try:
-        raw = yaml.safe_load(path.read_text(encoding="utf-8"))
-    except FileNotFoundError as err:
-        raise InputError(f"vehicle file '{path}': does not exist") from err
-    except (OSError, UnicodeDecodeError) as err:
-        raise InputError(f"vehicle file '{path}': cannot be read ({err})") from err
-    except yaml.YAMLError as err:
-        raise InputError(f"vehicle file '{path}': not valid YAML ({' '.join(str(err).split())})") from err
-    if raw is None:
-        raw = {}
-    if not isinstance(raw, dict):
-        raise InputError(f"vehicle file '{path}': must hold keys such as shape: and mass:, found {type(raw).__name__}")
-    return _validated(path, raw)
 
 
 _SECTIONS: dict[str, type[BaseModel]] = {"mass": _MassSection, "reference": _ReferenceSection}
