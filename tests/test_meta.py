@@ -25,6 +25,7 @@ ORDER = (
     "files",
     "kernelcache",
     "plain",
+    "progress",
     "environment",
     "vehicle",
     "mesh",

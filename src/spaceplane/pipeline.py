@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -21,12 +20,10 @@ from spaceplane.analysis.found import Analysis, remarks
 from spaceplane.analysis.settings import AnalyseSettings
 from spaceplane.files import writable_folder
 from spaceplane.flow.solution import FlowConditions
+from spaceplane.progress import Progress, silent
 from spaceplane.report.output import write
 from spaceplane.vehicle.controls import CONTROLS, ControlDeflections
 from spaceplane.vehicle.presets import Vehicle
-
-Progress = Callable[[str, int, int, str], None]
-"""Called with (phase, done, total, text); calls of the solver have the name of the body before the phase."""
 
 
 def analyse(vehicle: Vehicle, settings: AnalyseSettings | None = None, progress: Progress | None = None) -> Analysis:
@@ -44,7 +41,7 @@ def analyse(vehicle: Vehicle, settings: AnalyseSettings | None = None, progress:
         InputError: something in the vehicle or the settings is not allowed.
     """
     settings = settings or AnalyseSettings()
-    say = progress or (lambda phase, done, total, text: None)
+    say = progress or silent
     points = settings.flight_points()
     plan = plan_conditions(list(points), settings.steps, is_symmetric(settings.deflections))
     body = solve_vehicle(vehicle, settings.deflections, plan.conditions, settings.mesh, settings.flow, say, "base")
@@ -122,7 +119,6 @@ def run(vehicle: Vehicle, settings: AnalyseSettings, out_dir: Path | str, progre
     """
     folder = writable_folder(out_dir)
     analysis = analyse(vehicle, settings, progress)
-    if progress:
-        progress("report", 0, 1, str(folder))
+    (progress or silent)("report", 0, 1, str(folder))
     write(analysis, folder)
     return analysis

@@ -34,10 +34,20 @@ def plain(value: Any) -> Any:
     if isinstance(value, int | np.integer):
         return int(value)
     if isinstance(value, float | np.floating):
-        return float(value) if math.isfinite(value) else None
+        return finite(value)
     if value is None or isinstance(value, str):
         return value
     raise TypeError(f"no JSON form for {type(value).__name__}")
+
+
+def finite(value: float | None) -> float | None:
+    """The number, in its own unit; None where there is none or it is not finite."""
+    return None if value is None or not math.isfinite(value) else float(value)
+
+
+def degrees(angle: float) -> float:
+    """Degrees from rad, without the round-off of the turn."""
+    return round(math.degrees(angle), 10)
 
 
 def override(record: Any, values: Mapping, readers: Readers, where: str = "") -> Any:

@@ -9,6 +9,9 @@ from numpy.typing import ArrayLike
 
 from spaceplane.flow import freestream
 
+FORCES_AND_MOMENTS = ("CL", "CD", "CY", "Cl", "Cm", "Cn")
+"""The six coefficients: lift, drag and side force in wind axes, rolling, pitching and yawing moment in body axes."""
+
 
 @dataclass(frozen=True)
 class WindAxes:

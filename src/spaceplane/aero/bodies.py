@@ -4,24 +4,23 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import xarray as xr
 
-from spaceplane.aero.derivatives import CONTROLS, Move, by_symmetry, control_derivatives
+from spaceplane.aero.derivatives import Move, by_symmetry, control_derivatives
 from spaceplane.aero.integrate import integrate, wetted_area
 from spaceplane.flow.settings import FlowSettings
 from spaceplane.flow.solution import ConvergenceRecord, FlowConditions, Solution
 from spaceplane.flow.solve import solve
 from spaceplane.mesh.generate import generate
 from spaceplane.mesh.settings import MeshSettings
+from spaceplane.progress import Progress, silent
 from spaceplane.vehicle.build import build
-from spaceplane.vehicle.controls import CONTROL_LIMITS_DEG, ControlDeflections
+from spaceplane.vehicle.controls import CONTROL_LIMITS_DEG, CONTROLS, ControlDeflections
 from spaceplane.vehicle.presets import Vehicle
 from spaceplane.vehicle.surface import Surface
-
-Progress = Callable[[str, int, int, str], None]
 
 
 @dataclass(frozen=True)
@@ -102,8 +101,7 @@ def solve_vehicle(
     """
 
     def say(phase: str, done: int, total: int, text: str) -> None:
-        if progress:
-            progress(f"{name}: {phase}", done, total, text)
+        (progress or silent)(f"{name}: {phase}", done, total, text)
 
     began = time.perf_counter()
     say("geometry", 0, 1, "")

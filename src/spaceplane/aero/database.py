@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from spaceplane.aero.derivatives import CONTROLS
 from spaceplane.errors import InputError
+from spaceplane.vehicle.controls import CONTROLS
 
 SCHEMA = "spaceplane.aero"
 SCHEMA_VERSION = 1

@@ -22,6 +22,7 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
+from spaceplane.aero.axes import FORCES_AND_MOMENTS
 from spaceplane.aero.conditions import ConditionPlan, PointPlan, Variation
 from spaceplane.aero.integrate import mirrored, mirrored_name
 
@@ -35,8 +36,6 @@ STABILITY = {
     )
     for coefficient in coefficients
 }
-CONTROLS = ("elevon_left", "elevon_right", "rudder_left", "rudder_right", "body_flap")
-CONTROL_COEFFICIENTS = ("CL", "CD", "CY", "Cl", "Cm", "Cn")
 CONVERGED = "converged"
 _SEVERITY = (CONVERGED, "oscillating", "failed")
 
@@ -140,7 +139,7 @@ def control_derivatives(moves: Mapping[str, Sequence[Move]]) -> xr.Dataset:
     source = None
     for surface, runs in moves.items():
         source = runs[0].base
-        for coefficient in CONTROL_COEFFICIENTS:
+        for coefficient in FORCES_AND_MOMENTS:
             slopes[f"{coefficient}_{surface}"] = [
                 _one_sided(runs, coefficient, point) for point in range(source.sizes["condition"])
             ]

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
-import numpy as np
 import xarray as xr
 
 from spaceplane.aero.conditions import product
@@ -17,9 +15,9 @@ from spaceplane.flow.solve import solve
 from spaceplane.mesh.generate import generate
 from spaceplane.mesh.mesh import Mesh
 from spaceplane.mesh.settings import MeshSettings
+from spaceplane.plain import degrees, finite
+from spaceplane.progress import Progress
 from spaceplane.vehicle.surface import Surface
-
-Progress = Callable[..., None]
 
 
 @dataclass(frozen=True)
@@ -85,16 +83,16 @@ def records(solution: Solution, coefficients: xr.Dataset) -> list[dict]:
     totals = coefficients.sel(part=TOTAL)
     result = []
     for i, record in enumerate(solution.records):
-        values = {name: _number(totals[name].values[i]) for name in (*COEFFICIENTS, *PRESSURES)}
+        values = {name: finite(totals[name].values[i]) for name in (*COEFFICIENTS, *PRESSURES)}
         result.append(
             {
                 "mach": float(c.mach[i]),
-                "alpha_deg": round(math.degrees(c.alpha[i]), 10),
-                "beta_deg": round(math.degrees(c.beta[i]), 10),
+                "alpha_deg": degrees(c.alpha[i]),
+                "beta_deg": degrees(c.beta[i]),
                 **values,
                 "converged": record.good,
                 "verdict": record.verdict,
-                "residual_drop": _number(record.residual_drop),
+                "residual_drop": finite(record.residual_drop),
                 "iterations": int(record.iterations),
                 "seconds": round(seconds, 3),
                 "cells": solution.mesh.cells,
@@ -108,7 +106,3 @@ def total_seconds(solution: Solution) -> float:
     """Wall time of the solver, s, all phases."""
     seconds = solution.statistics.get("seconds", {})
     return float(sum(seconds.values())) if isinstance(seconds, dict) else float(seconds)
-
-
-def _number(value: float) -> float | None:
-    return float(value) if np.isfinite(value) else None

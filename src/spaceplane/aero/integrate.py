@@ -7,13 +7,13 @@ from typing import Protocol
 import numpy as np
 import xarray as xr
 
-from spaceplane.aero.axes import geometry_to_body, wind_axes
+from spaceplane.aero.axes import FORCES_AND_MOMENTS, geometry_to_body, wind_axes
 from spaceplane.flow.solution import ConvergenceRecord, Solution
 from spaceplane.mesh.mesh import Mesh
 
 TOTAL = "total"
-COEFFICIENTS = ("CL", "CD", "CY", "Cl", "Cm", "Cn", "CA", "CN", "CA_forebody", "CA_base")
-WITH_SPREAD = ("CL", "CD", "CY", "Cl", "Cm", "Cn", "CA", "CN")
+COEFFICIENTS = (*FORCES_AND_MOMENTS, "CA", "CN", "CA_forebody", "CA_base")
+WITH_SPREAD = (*FORCES_AND_MOMENTS, "CA", "CN")
 """Coefficients whose wandering is known or estimated, see `integrate`."""
 PRESSURES = ("Cp_max", "Cp_min")
 LATERAL = ("CY", "Cl", "Cn")

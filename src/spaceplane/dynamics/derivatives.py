@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 
 from spaceplane.errors import InputError
+from spaceplane.vehicle.controls import CONTROLS as SURFACES
 
 STATIC = ("CD_alpha", "CL_alpha", "Cm_alpha", "CY_beta", "Cl_beta", "Cn_beta", "CD_M", "CL_M", "Cm_M")
 # On q c/2V and dalpha/dt c/2V; on p b/2V and r b/2V.
@@ -14,7 +15,6 @@ DAMPING_PITCH = ("CL_q", "Cm_q", "CL_alphadot", "Cm_alphadot")
 DAMPING_LATERAL = ("CY_p", "Cl_p", "Cn_p", "CY_r", "Cl_r", "Cn_r")
 DAMPING = (*DAMPING_PITCH, *DAMPING_LATERAL)
 COEFFICIENTS = ("CD", "CL", "CY", "Cl", "Cm", "Cn")
-SURFACES = ("elevon_left", "elevon_right", "rudder_left", "rudder_right", "body_flap")
 COMBINED = ("aileron", "elevator", "rudder")
 CONTROLS = (*COMBINED, *SURFACES)
 CONTROL_DERIVATIVES = tuple(f"{coefficient}_{control}" for control in CONTROLS for coefficient in COEFFICIENTS)

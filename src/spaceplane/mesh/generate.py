@@ -5,7 +5,6 @@ from __future__ import annotations
 import dataclasses
 import math
 import time
-from collections.abc import Callable
 
 import numpy as np
 
@@ -20,15 +19,14 @@ from spaceplane.mesh.mesh import Mesh
 from spaceplane.mesh.settings import MeshSettings
 from spaceplane.mesh.symmetry import is_symmetric, mirrored_parts
 from spaceplane.mesh.walls import fine_parts, fine_walls, join_coarse_walls
+from spaceplane.progress import Progress, silent
+from spaceplane.vehicle.lofts import box
 from spaceplane.vehicle.surface import Surface
 
 # Cells of the dense window round the body that fit into memory with all its companions.
 LARGEST_WINDOW = 400_000_000
 # Room round the body in that window, cells below and above.
 PAD_BELOW, PAD_ABOVE = 2, 3
-
-Progress = Callable[[str, int, int, str], None]
-"""Called with (phase, done, total, text)."""
 
 
 def generate(surface: Surface, settings: MeshSettings | None = None, progress: Progress | None = None) -> Mesh:
@@ -62,12 +60,10 @@ def compile_kernels(progress: Progress | None = None) -> None:
     """
     if CACHE.is_complete("mesh"):
         return
-    if progress:
-        progress("compile mesh", 0, 1, "compiling mesh kernels (once, ~15 s)")
-    corners = np.array([(x, y, z) for x in (0.0, 1.0) for y in (-0.5, 0.5) for z in (0.0, 1.0)])
-    sides = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
-    triangles = np.array([half for a, b, c, d in sides for half in ((a, b, c), (a, c, d))])
-    cube = Surface(corners, triangles, np.zeros(len(triangles), np.int32), ("cube",))
+    (progress or silent)("compile mesh", 0, 1, "compiling mesh kernels (once, ~15 s)")
+    corners = np.stack(np.meshgrid((0.0, 1.0), (-0.5, 0.5), (0.0, 1.0), indexing="ij"), axis=-1)
+    shell = box(corners)
+    cube = Surface(shell.points, shell.triangles, np.zeros(len(shell.triangles), np.int32), ("cube",))
     for half in (True, False):  # every kernel, with the types of either kind of mesh
         mesh = _generate(cube, MeshSettings(wall_cell=0.3, far_field=1.0, fine_edges=True), half)
         coarsen(mesh)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from markupsafe import Markup
 
+from spaceplane.aero.axes import FORCES_AND_MOMENTS
 from spaceplane.report.names import GREEK, STATES, greek, split_derivative, symbol, words
 from spaceplane.report.numbers import MINUS, MISSING, duration, fixed, grouped, is_number, measured, number
 from spaceplane.report.plots import convergence_plot, derivative_bars, eigenvalue_planes, eigenvalue_text, phase_clock
@@ -11,7 +12,6 @@ from spaceplane.report.read import level_text
 
 LEVEL_CSS = {1: "good", 2: "fair", 3: "poor", "below 3": "bad"}
 VERDICT_CSS = {"converged": "good", "oscillating": "fair", "failed": "bad"}
-PART_COEFFICIENTS = ("CL", "CD", "CY", "Cl", "Cm", "Cn")
 BARS = ("CL_alpha", "CD_alpha", "Cm_alpha", "CY_beta", "Cl_beta", "Cn_beta")
 
 
@@ -97,7 +97,7 @@ def _validity(p: dict) -> dict:
 
 def _parts(p: dict) -> dict:
     by_part = p.get("coefficients_by_part") or {}
-    columns = [c for c in PART_COEFFICIENTS if any(c in row for row in by_part.values())]
+    columns = [c for c in FORCES_AND_MOMENTS if any(c in row for row in by_part.values())]
     largest = {c: max((abs(row[c]) for row in by_part.values() if is_number(row.get(c))), default=0.0) for c in columns}
     rows = []
     for part, values in by_part.items():
@@ -117,7 +117,7 @@ def _controls(p: dict) -> dict:
         parts = split_derivative(name)
         if parts.control:
             found.setdefault(parts.variable, {})[parts.coefficient] = record
-    columns = [c for c in PART_COEFFICIENTS if any(c in row for row in found.values())]
+    columns = [c for c in FORCES_AND_MOMENTS if any(c in row for row in found.values())]
     rows = []
     for control, row in found.items():
         cells = [measured((row.get(c) or {}).get("value"), (row.get(c) or {}).get("error")) for c in columns]

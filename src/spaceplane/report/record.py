@@ -2,28 +2,26 @@
 
 from __future__ import annotations
 
-import math
 from datetime import UTC, datetime
 
 import numpy as np
 import xarray as xr
 
 from spaceplane import __version__
+from spaceplane.aero.axes import FORCES_AND_MOMENTS
 from spaceplane.aero.conditions import ConditionPlan
 from spaceplane.aero.integrate import COEFFICIENTS, PRESSURES, TOTAL, WITH_SPREAD, wetted_area
 from spaceplane.analysis.flight import PointAnalysis
 from spaceplane.analysis.found import Analysis
 from spaceplane.dynamics.modes import to_record as mode_record
 from spaceplane.flow.solution import ConvergenceRecord
-from spaceplane.plain import plain
+from spaceplane.plain import degrees, plain
 from spaceplane.qualities.assess import to_record as verdict_record
 from spaceplane.report.read import SCHEMA, SCHEMA_VERSION
 from spaceplane.vehicle.controls import ControlDeflections
 from spaceplane.vehicle.presets import Vehicle
 from spaceplane.vehicle.shape import PARAMETERS
 from spaceplane.vehicle.surface import Surface
-
-BY_PART = ("CL", "CD", "CY", "Cl", "Cm", "Cn")
 
 
 def result(analysis: Analysis) -> dict:
@@ -42,11 +40,6 @@ def result(analysis: Analysis) -> dict:
             "warnings": list(analysis.warnings),
         }
     )
-
-
-def _degrees(angle: float) -> float:
-    """Degrees without the round-off of the turn from rad."""
-    return round(math.degrees(angle), 10)
 
 
 def vehicle(subject: Vehicle, deflections: ControlDeflections, surface: Surface) -> dict:
@@ -91,10 +84,10 @@ def flight_point(analysis: Analysis, index: int) -> dict:
         "name": point.name,
         "mach": point.mach,
         "altitude_m": point.altitude,
-        "alpha_deg": _degrees(point.alpha),
-        "beta_deg": _degrees(point.beta),
-        "gamma_deg": _degrees(point.gamma),
-        "bank_deg": _degrees(point.bank),
+        "alpha_deg": degrees(point.alpha),
+        "beta_deg": degrees(point.beta),
+        "gamma_deg": degrees(point.gamma),
+        "bank_deg": degrees(point.bank),
         "velocity_ms": point.velocity,
         "dynamic_pressure_Pa": point.dynamic_pressure,
         "pressure_Pa": ambient.pressure,
@@ -121,7 +114,7 @@ def coefficients_by_part(coefficients: xr.Dataset, condition: int) -> dict:
     """Part to coefficient to value at one condition."""
     at = coefficients.isel(condition=condition)
     return {
-        str(part): {name: float(at[name].sel(part=part)) for name in BY_PART}
+        str(part): {name: float(at[name].sel(part=part)) for name in FORCES_AND_MOMENTS}
         for part in at.part.values
         if part != TOTAL
     }
@@ -173,8 +166,8 @@ def convergence_row(one: ConvergenceRecord, plan: ConditionPlan, condition: int,
     return {
         "label": label,
         "mach": plan.conditions.mach[condition],
-        "alpha_deg": _degrees(plan.conditions.alpha[condition]),
-        "beta_deg": _degrees(plan.conditions.beta[condition]),
+        "alpha_deg": degrees(plan.conditions.alpha[condition]),
+        "beta_deg": degrees(plan.conditions.beta[condition]),
         "verdict": one.verdict,
         "residual_drop": one.residual_drop,
         "iterations": one.iterations,

@@ -18,6 +18,7 @@ import xarray as xr
 from spaceplane.aero.integrate import integrate
 from spaceplane.flow.solution import FlowConditions
 from spaceplane.mesh.settings import MeshSettings
+from spaceplane.plain import finite
 from spaceplane.validation import horus_tables
 from spaceplane.validation.cases import Progress
 from spaceplane.validation.flowcase import solve_body
@@ -146,7 +147,7 @@ def lateral_records(clean: xr.Dataset) -> list[Record]:
                 condition=f"Mach {LATERAL_MACH:g}, alpha {LATERAL_ALPHA_DEG:g} deg",
                 unit="1/deg",
                 published=published,
-                computed=_finite(computed),
+                computed=finite(computed),
                 band=BAND,
                 kind="relative",
                 source=horus_tables.SOURCE,
@@ -236,7 +237,7 @@ def moment_center_records(clean: xr.Dataset, vehicle: Vehicle) -> list[Record]:
             condition=f"{where}; rms difference of C_m {fit.before:.4f} before, {fit.after:.4f} after",
             unit="m",
             published=reference.moment_center[axis],
-            computed=_finite(fit.x if axis == 0 else fit.z),
+            computed=finite(fit.x if axis == 0 else fit.z),
             band=0.5,
             kind="absolute",
             source=horus_tables.SOURCE,
@@ -250,10 +251,6 @@ def _grid() -> list[tuple[float, float]]:
     return [(mach, alpha) for mach in MACHS for alpha in ALPHAS_DEG]
 
 
-def _finite(value: float) -> float | None:
-    return value if math.isfinite(value) else None
-
-
 def _judged(quantity: str, alpha: float) -> bool:
     return "impact" in quantity or (quantity in ("CL", "CD") and alpha >= JUDGED_FROM_DEG)
 
@@ -265,7 +262,7 @@ def _record(quantity: str, mach: float, alpha: float, published: float, computed
         condition=f"Mach {mach:g}, alpha {alpha:g} deg",
         unit="-",
         published=published,
-        computed=_finite(computed),
+        computed=finite(computed),
         band=BAND,
         kind="relative",
         source=horus_tables.SOURCE,

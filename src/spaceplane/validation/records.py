@@ -10,6 +10,7 @@ from pathlib import Path
 
 from spaceplane import __version__
 from spaceplane.files import json_text, told, write_text
+from spaceplane.plain import finite
 
 
 @dataclass(frozen=True)
@@ -76,8 +77,8 @@ def passed(records: Iterable[Record]) -> bool:
 def as_dict(record: Record) -> dict:
     """The record with its deviation and verdict, ready for JSON (no NaN: null instead)."""
     row = asdict(record)
-    row["computed"] = _finite(record.computed)
-    row["deviation"] = _finite(record.deviation)
+    row["computed"] = finite(record.computed)
+    row["deviation"] = finite(record.deviation)
     row["verdict"] = record.verdict
     return row
 
@@ -132,10 +133,6 @@ def read(path: str | Path) -> tuple[Record, ...]:
     document = json.loads(Path(path).read_text(encoding="utf-8"))
     fields = Record.__dataclass_fields__
     return tuple(Record(**{key: row[key] for key in row if key in fields}) for row in document["records"])
-
-
-def _finite(value: float | None) -> float | None:
-    return None if value is None or not math.isfinite(value) else value
 
 
 def _markdown_row(record: Record) -> str:
