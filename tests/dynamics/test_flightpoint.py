@@ -7,11 +7,11 @@ import pytest
 
 from spaceplane.dynamics import frames
 from spaceplane.dynamics.flightpoint import (
+    TAEM_MACH,
     glide_alpha,
     glide_lift_coefficient,
     scheduled_alpha_deg,
     taem_point,
-    taem_points,
     trajectory_altitude,
 )
 from spaceplane.errors import InputError
@@ -19,9 +19,9 @@ from spaceplane.errors import InputError
 from . import horus
 
 
-def test_taem_points():
-    points = taem_points()
-    assert [p.mach for p in points] == [0.8, 1.5, 2.5]
+def test_the_points_of_the_descent():
+    assert TAEM_MACH == (0.8, 1.5, 2.5)
+    points = [taem_point(mach) for mach in TAEM_MACH]
     assert [p.altitude for p in points] == [13_000.0, 20_000.0, 25_000.0]
     assert math.degrees(points[2].alpha) == pytest.approx(16.6)
     assert "thesis" in points[2].alpha_source and "schedule" in points[0].alpha_source

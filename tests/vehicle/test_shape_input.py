@@ -93,7 +93,7 @@ def test_horus_2b_has_the_published_numbers():
 
 
 def test_optimised_preset_changes_five_parameters():
-    shape = presets.horus_2b_optimised().shape
+    shape = presets.load("horus-2b-optimised").shape
     default = ShapeParameters()
     changed = {p.name for p in PARAMETERS if getattr(shape, p.name) != getattr(default, p.name)}
     assert changed == set(presets.OPTIMISED_SHAPE) and len(changed) == 5

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from spaceplane.aero.conditions import DerivativeSteps
-from spaceplane.dynamics.flightpoint import FlightPoint, taem_point
+from spaceplane.dynamics.flightpoint import TAEM_MACH, FlightPoint, taem_point
 from spaceplane.dynamics.linearise import FORMS
 from spaceplane.errors import InputError
 from spaceplane.flow.settings import FlowSettings
@@ -73,7 +73,7 @@ class AnalyseSettings:
         category: flight phase category of MIL-F-8785C.
     """
 
-    mach: tuple[float, ...] = (0.8, 1.5, 2.5)
+    mach: tuple[float, ...] = TAEM_MACH
     alpha_deg: tuple[float, ...] | None = None
     altitude_m: tuple[float, ...] | None = None
     gamma_deg: tuple[float, ...] | None = None

@@ -233,11 +233,6 @@ def taem_point(
     return flight_point(mach, altitude, alpha_deg, gamma_deg, bank_deg, alpha_source=source)
 
 
-def taem_points() -> tuple[FlightPoint, ...]:
-    """The three flight points of the thesis, Mach 0.8, 1.5 and 2.5."""
-    return tuple(taem_point(mach) for mach in TAEM_MACH)
-
-
 def equilibrium_rates(point: FlightPoint, mass: float, area: float) -> AngularRates:
     """Body rates that hold angle of attack, sideslip and bank constant in flight without side force.
 

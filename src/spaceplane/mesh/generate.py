@@ -199,29 +199,3 @@ def _generate(surface: Surface, settings: MeshSettings, half: bool) -> Mesh:
     merged = int((root != np.arange(len(root))).sum()) - joined
     mesh.record.update(describe(mesh, surface, settings, grid, cut, shift, wetted, body, merged, enclosed, seconds))
     return mesh
-
-
-def sequence(
-    surface: Surface, settings: MeshSettings | None = None, levels: int = 3
-) -> tuple[list[Mesh], list[np.ndarray]]:
-    """The mesh and its nested coarser companions, for a start on coarse grids.
-
-    Args:
-        surface, settings: as for `generate`.
-        levels: number of meshes; each coarser one joins octree siblings of the one before.
-
-    Returns:
-        Meshes from coarse to fine, and for each but the first [cell] int32 the cell of the mesh before that holds it:
-        `maps[n]` carries values of `meshes[n]` to `meshes[n + 1]` as `coarse_values[maps[n]]`.
-
-    Raises:
-        InputError: as `generate`, or no level at all.
-    """
-    if levels < 1:
-        raise InputError(f"levels: {levels}, must be at least 1")
-    meshes, maps = [generate(surface, settings)], []
-    for _ in range(levels - 1):
-        coarse, cell = coarsen(meshes[0], (settings or MeshSettings()).merge_fraction)
-        meshes.insert(0, coarse)
-        maps.insert(0, cell)
-    return meshes, maps

@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
+from spaceplane.dynamics.statespace import STATE_UNITS
+
 GREEK = {"alpha": "α", "beta": "β", "gamma": "γ", "sigma": "σ", "mu": "μ", "phi": "φ", "psi": "ψ", "theta": "θ"}
 
 COEFFICIENTS = {
@@ -26,18 +28,19 @@ COEFFICIENTS = {
 # physics: C_m_alpha < 0, C_n_beta > 0, C_l_beta < 0 and C_Y_beta < 0 are the stable signs.
 STABLE_SIGN = {"Cm_alpha": -1, "Cn_beta": 1, "Cl_beta": -1, "CY_beta": -1, "CL_alpha": 1}
 
-# State of the linear model: what it is and its unit.
-STATES = {
-    "V": ("speed", "m/s"),
-    "gamma": ("flight-path angle", "rad"),
-    "R": ("radius", "m"),
-    "p": ("roll rate", "rad/s"),
-    "q": ("pitch rate", "rad/s"),
-    "r": ("yaw rate", "rad/s"),
-    "alpha": ("angle of attack", "rad"),
-    "beta": ("sideslip", "rad"),
-    "sigma": ("bank angle", "rad"),
+_STATE_NAMES = {
+    "V": "speed",
+    "gamma": "flight-path angle",
+    "R": "radius",
+    "p": "roll rate",
+    "q": "pitch rate",
+    "r": "yaw rate",
+    "alpha": "angle of attack",
+    "beta": "sideslip",
+    "sigma": "bank angle",
 }
+STATES = {state: (name, STATE_UNITS[state]) for state, name in _STATE_NAMES.items()}
+"""State of the linear model: what it is and its unit."""
 
 _VARIABLES = {"alpha": "α", "beta": "β", "M": "M", "mach": "M", "p": "p", "q": "q", "r": "r"}
 

@@ -120,39 +120,6 @@ def hb2(diameter: float = 1.0, segments: int = 96, arc_points: int = 24) -> Surf
     return revolve(profile * diameter, segments, base_from=len(profile) - 2)
 
 
-def diamond_wing(
-    chord: float = 1.0, span: float = 2.0, thickness: float = 0.05, tip_chord: float | None = None
-) -> Surface:
-    """A wing of double-wedge section in the plane z = 0 with flat tips, leading edge from the origin.
-
-    Args:
-        chord: root chord, m.
-        span: tip to tip, m.
-        thickness: thickness over chord, at mid chord.
-        tip_chord: tip chord, m; the root's by default. The half-chord line is unswept.
-    """
-    tip = chord if tip_chord is None else tip_chord
-    ends = []
-    for y, local in ((-0.5 * span, tip), (0.0, chord), (0.5 * span, tip)):
-        middle, half = 0.5 * chord, 0.5 * local
-        rise = 0.5 * thickness * local
-        ends.append([(middle - half, y, 0.0), (middle, y, rise), (middle + half, y, 0.0), (middle, y, -rise)])
-    points = np.array(ends).reshape(-1, 3)
-    triangles, part = [], []
-    for panel in range(2):
-        a, b = 4 * panel, 4 * panel + 4
-        for corner in range(4):
-            p, q = corner, (corner + 1) % 4
-            triangles += [(a + p, b + q, b + p), (a + p, a + q, b + q)]
-            part += [panel, panel]
-    triangles += [(0, 3, 2), (0, 2, 1), (8, 9, 10), (8, 10, 11)]
-    part += [0, 0, 1, 1]
-    surface = Surface(points, np.array(triangles, np.int64), np.array(part, np.int32), ("wing_left", "wing_right"))
-    if surface.volume < 0.0:
-        surface = Surface(points, surface.triangles[:, ::-1].copy(), surface.part, surface.part_names)
-    return surface
-
-
 def _exact_cosine(segments: int) -> np.ndarray:
     """[segments] cosine of equally spaced angles, symmetric to the last bit about both axes."""
     quarter = np.sin(0.5 * math.pi * np.arange(segments // 4 + 1) / (segments // 4))

@@ -78,11 +78,6 @@ def horus_2b() -> Vehicle:
     return Vehicle("horus-2b", ShapeParameters(), HORUS_MASS, HORUS_REFERENCE)
 
 
-def horus_2b_optimised() -> Vehicle:
-    """The thesis's optimised shape, with the mass properties of HORUS-2B."""
-    return load("horus-2b-optimised")
-
-
 def load(
     name_or_path: str | Path, overrides: Mapping[str, object] | None = None, allow_outside: bool = False
 ) -> Vehicle:
