@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import csv
 import json
 import os
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -61,6 +62,21 @@ def write_text(text: str, path: Path) -> None:
     """
     with renamed_when_done(path) as partial:
         partial.write_text(text, encoding="utf-8")
+
+
+def write_csv(rows: Iterable[Mapping[str, Any]], path: Path) -> None:
+    """Write rows with named columns as CSV, all or nothing; missing values and None are empty. No rows, an empty file.
+
+    Raises:
+        OSError: the file cannot be written.
+    """
+    rows = list(rows)
+    columns = list(dict.fromkeys(name for row in rows for name in row))
+    with renamed_when_done(path) as partial, partial.open("w", newline="", encoding="utf-8") as file:
+        if columns:
+            writer = csv.DictWriter(file, columns, restval="", lineterminator="\n")
+            writer.writeheader()
+            writer.writerows({name: "" if value is None else value for name, value in row.items()} for row in rows)
 
 
 def json_text(value: Any) -> str:

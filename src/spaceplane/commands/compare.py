@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -73,7 +74,5 @@ def _computed(folder: Path, cells: str | None, workers: int) -> dict:
         def on_change(p) -> None:
             tell(f"{p.done} of {p.total} shapes: {', '.join(p.running)}", p.fraction)
 
-        def compile_once() -> None:  # here, not in every worker
-            compile_kernels(tell)
-
+        compile_once = partial(compile_kernels, tell)  # here, not in every worker
         return default_against_optimised(folder / "store.sqlite", on_change, workers, settings, before=compile_once)

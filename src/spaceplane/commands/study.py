@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -65,9 +66,7 @@ def sensitivity(
             left = "" if p.remaining_s is None else f", about {p.remaining_s / 60:.0f} min left"
             tell(f"{p.done} of {p.total} shapes ({p.reused} from the store){left}", p.fraction)
 
-        def compile_once() -> None:  # here, not in every worker
-            compile_kernels(tell)
-
+        compile_once = partial(compile_kernels, tell)  # here, not in every worker
         found = study.run(asked, store_path, out, on_change, workers, plots=plots, before=compile_once)
     if json_file is not None:
         import json

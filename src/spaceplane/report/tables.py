@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Callable, Iterable
 from pathlib import Path
 
 import numpy as np
 
 from spaceplane.files import renamed_when_done
+from spaceplane.files import write_csv as write_rows
 
 CONDITION_KEYS = (
     "mach",
@@ -100,11 +100,7 @@ def write_csv(result: dict, folder: Path) -> list[Path]:
     paths = []
     for name, rows in TABLES.items():
         path = folder / f"{name}.csv"
-        found = rows(result)
-        with renamed_when_done(path) as partial, partial.open("w", newline="", encoding="utf-8") as file:
-            writer = csv.DictWriter(file, _columns(found), restval="")
-            writer.writeheader()
-            writer.writerows({k: "" if v is None else v for k, v in row.items()} for row in found)
+        write_rows(rows(result), path)
         paths.append(path)
     return paths
 
@@ -151,7 +147,3 @@ def write_netcdf(result: dict, folder: Path) -> list[Path]:
     with renamed_when_done(path) as partial:
         data.to_netcdf(partial)
     return [path]
-
-
-def _columns(rows: list[dict]) -> list[str]:
-    return list(dict.fromkeys(key for row in rows for key in row))

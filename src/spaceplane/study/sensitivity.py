@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Callable
 from dataclasses import dataclass
 from datetime import UTC, datetime
@@ -10,7 +9,7 @@ from pathlib import Path
 
 from spaceplane import __version__
 from spaceplane.errors import InputError, unknown_name
-from spaceplane.files import json_text, writable_folder, write_text
+from spaceplane.files import json_text, writable_folder, write_csv, write_text
 from spaceplane.study import thesis
 from spaceplane.study.cases import SensitivityStudy
 from spaceplane.study.changes import Change, changes, mesh_noise
@@ -189,8 +188,8 @@ def as_sensitivities(rows: tuple[Change, ...]) -> list[thesis.Sensitivity]:
 def write_tables(found: SensitivityResult, out_dir: Path) -> dict[str, Path]:
     """Write sensitivity.csv (tidy), agreement.csv and sensitivity.json; return their paths by name."""
     files = {name: out_dir / name for name in ("sensitivity.csv", "agreement.csv", "sensitivity.json")}
-    _write_csv(files["sensitivity.csv"], [row.as_row() for row in found.rows])
-    _write_csv(files["agreement.csv"], list(found.agreement))
+    write_csv([row.as_row() for row in found.rows], files["sensitivity.csv"])
+    write_csv(found.agreement, files["agreement.csv"])
     write_text(json_text(_document(found)), files["sensitivity.json"])
     return files
 
@@ -244,11 +243,3 @@ def _warnings(results: list[tuple[str, dict]]) -> tuple[str, ...]:
             if bad:
                 lines.append(f"{label}, Mach {point['mach']:g}: {', '.join(bad)}")
     return tuple(lines)
-
-
-def _write_csv(path: Path, rows: list[dict]) -> None:
-    with path.open("w", newline="", encoding="utf-8") as file:
-        if rows:
-            writer = csv.DictWriter(file, fieldnames=list(rows[0]), lineterminator="\n")
-            writer.writeheader()
-            writer.writerows({name: "" if value is None else value for name, value in row.items()} for row in rows)
