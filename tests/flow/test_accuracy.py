@@ -65,10 +65,7 @@ def test_cone_surface_pressure_matches_taylor_maccoll(mach, angle_deg, shock_deg
     angle = np.radians(angle_deg)
     mesh = cone(16, 24, 12, angle, np.radians(shock_deg + 8.0))
     solution = solve(mesh, FlowConditions(np.array([mach]), np.zeros(1), np.zeros(1)), FlowSettings(coarse_levels=0))
-    # The start on the same mesh leaves little for the residual to fall; the forces must stand all the same.
-    record = solution.records[0]
-    assert record.verdict != "failed"
-    assert record.window_spread.max() < 1e-3 * np.linalg.norm(record.window_mean)
+    assert solution.records[0].good, solution.records[0].reason
     c = mesh.wall_center
     radius = np.hypot(c[:, 1], c[:, 2])
     surface = (radius < 1.001 * c[:, 0] * np.tan(angle)) & (c[:, 1] > 1e-6) & (c[:, 2] > 1e-6) & (c[:, 0] > 0.5)
@@ -89,11 +86,10 @@ def test_sphere_stagnation_pressure(supersonic_sphere):
     np.testing.assert_allclose(found.cp_max, exact, rtol=0.03)
 
 
-def test_supersonic_sphere_forces_stand(supersonic_sphere):
-    """Forces wander by less than half a per cent, though the wake keeps some residuals from falling two decades."""
+def test_supersonic_sphere_converges(supersonic_sphere):
     for record in supersonic_sphere.records:
-        assert record.verdict in ("converged", "oscillating"), record.reason
-        assert record.window_spread.max() < 5e-3 * np.linalg.norm(record.window_mean)
+        assert record.good, record.reason
+        assert record.window_spread.max() < 1e-3 * np.linalg.norm(record.window_mean)
     assert diagnose(supersonic_sphere).enthalpy_error.max() < 0.02
 
 

@@ -31,7 +31,7 @@ def test_free_stream_stays_on_a_distorted_mesh(precision, bound):
 
 @pytest.mark.parametrize("mesh", [box(7, 0.25), sphere(6, 6)], ids=["box", "sphere"])
 def test_gradients_of_linear_fields_are_exact(mesh):
-    ensemble = ensemble_on(mesh, limiter="none", flux="hllc")
+    ensemble = ensemble_on(mesh, limiter="none", flux="hllc", wake_calming=0.0)
     slopes = np.random.default_rng(1).uniform(-0.02, 0.02, (5, 3))
     center = mesh.cell_center[ensemble.topology.order]
     ensemble.state += (center @ slopes.T)[:, :, None]

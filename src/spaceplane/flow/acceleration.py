@@ -6,10 +6,12 @@ D. G. Anderson, J. ACM 12 (1965) 547-560; as least squares on differences: H. F.
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numba import prange
 
-from spaceplane.flow.compiled import WIDTH, kernel
+from spaceplane.flow.compiled import WIDTH, inlined, kernel
 from spaceplane.flow.topology import Topology
 
 
@@ -54,12 +56,26 @@ def record_difference(
         gram[chunk] = g[:, :lanes]
 
 
-@kernel
-def apply_step(topology, state, change, last_change, last_step, combined, weights, slots, largest, limited):
-    """state += change - sum of weights[slot, lane] combined[:, slot], scaled cell by cell so that density and
-    pressure fall by at most `largest` of themselves and rise by twice that.
+@inlined
+def cooling(u, v, w, r, p, gamma, ceiling):
+    """Factor on pressure and on the square of velocity that brings the total enthalpy down to `ceiling`, at most 1."""
+    real = type(r)
+    enthalpy = gamma / (gamma - real(1)) * p / r + real(0.5) * (u * u + v * v + w * w)
+    return min(real(1), ceiling / enthalpy)
 
-    Keeps the change and the step for the next call. `limited` [chunk, lane] counts cells that were scaled back.
+
+@kernel
+def apply_step(
+    topology, state, change, last_change, last_step, combined, weights, slots, largest, gamma, ceiling, limited
+):
+    """state += change - sum of weights[slot, lane] combined[:, slot], held within physical bounds cell by cell.
+
+    The step is scaled so that density and pressure fall by at most `largest` of themselves and rise by twice that, and
+    left out where it is not a number; then the total enthalpy is brought down to `ceiling` [lane] at unchanged density
+    and Mach number. Steady flow has the free stream's total enthalpy everywhere, so that the ceiling acts on transients
+    only: in them, large steps would heat wakes until they break.
+
+    Keeps the change and the step for the next call. `limited` [chunk, lane] counts cells that were held back.
     """
     lanes = state.shape[2]
     chunk_cells = topology.chunk_cells
@@ -82,15 +98,22 @@ def apply_step(topology, state, change, last_change, last_step, combined, weight
                 size = max(max(real(-1) * x, real(0.5) * x), max(real(-1) * y, real(0.5) * y))
                 factor = largest / size if size > largest else real(1)
                 count[n] += real(1) if size > largest else real(0)
-                step[0, n] *= factor
-                step[1, n] *= factor
-                step[2, n] *= factor
-                step[3, n] *= factor
-                step[4, n] *= factor
+                sound = size < real(1e30)
+                for k in range(5):
+                    last_step[i, k, n] = state[i, k, n]
+                    state[i, k, n] += factor * step[k, n] if sound else real(0)
+                cool = cooling(
+                    state[i, 1, n], state[i, 2, n], state[i, 3, n], state[i, 0, n], state[i, 4, n], gamma, ceiling[n]
+                )
+                slow = math.sqrt(cool)
+                state[i, 1, n] *= slow
+                state[i, 2, n] *= slow
+                state[i, 3, n] *= slow
+                state[i, 4, n] *= cool
+                count[n] += real(1) if cool < real(1) else real(0)
             for k in range(5):
                 for n in range(lanes):
-                    state[i, k, n] += step[k, n]
-                    last_step[i, k, n] = step[k, n]
+                    last_step[i, k, n] = state[i, k, n] - last_step[i, k, n]
         limited[chunk] = count
 
 

@@ -20,6 +20,9 @@ from spaceplane.mesh.mesh import Mesh
 # Ensembles are padded to full vectors of this many lanes.
 LANE_UNIT = 8
 
+HIGHEST_ENTHALPY = 1.2
+"""Total enthalpy that a transient may reach in a cell, on the free stream's."""
+
 
 def free_stream(conditions: FlowConditions) -> np.ndarray:
     """[5, condition] rho, u, v, w, p in the scaled units of `Solution`."""
@@ -74,14 +77,20 @@ class Ensemble:
         self.change = np.zeros((cells, 5, lanes), dtype)
         self.gradient = np.zeros((cells, 15, lanes), dtype) if self.order == 2 else np.zeros((1, 15, lanes), dtype)
         self.sensor = np.zeros((cells, lanes), dtype)
+        self.hold = np.zeros(lanes, dtype)
+        mach = self.conditions.mach[self.lanes]
+        self.per_pressure = (2.0 / mach**2).astype(dtype)
+        self.ceiling = (HIGHEST_ENTHALPY * (1.0 / (self.conditions.gamma - 1.0) + 0.5 * mach**2)).astype(dtype)
         self.inverse = np.zeros((cells, 25, lanes), dtype)
 
     def keep(self, lanes: np.ndarray) -> None:
         """Drop all lanes but these (indices into the current ones)."""
-        state = self.state
+        state, sensor, hold = self.state, self.sensor, self.hold
         self.allocate(self.lanes[lanes])
         source = np.concatenate([lanes, np.full(len(self.lanes) - len(lanes), lanes[-1])])
         np.take(state, source, axis=2, out=self.state)
+        np.take(sensor, source, axis=1, out=self.sensor)
+        self.hold = hold[source]
         self.anderson.keep(source)
 
     def evaluate(self) -> np.ndarray:
@@ -107,6 +116,9 @@ class Ensemble:
             self.high,
             self.smallness,
             self.gamma,
+            self.per_pressure,
+            self.dtype(self.settings.wake_calming),
+            self.hold,
         )
 
     def balance(self) -> None:
@@ -196,9 +208,17 @@ class Ensemble:
             weights,
             self.anderson.used,
             self.dtype(largest),
+            self.gamma,
+            self.ceiling,
             limited,
         )
         return limited.sum(axis=0, dtype=np.float64) / self.mesh.cells
+
+    def undo(self, lanes: np.ndarray) -> None:
+        """Take back the last step of the lanes marked true."""
+        for lane in np.flatnonzero(lanes):
+            self.state[:, :, lane] -= self.anderson.last_step[:, :, lane]
+            self.anderson.last_step[:, :, lane] = 0
 
     def wall_pressure(self) -> np.ndarray:
         """[wall, lane] pressure on the walls, from the state and gradients of the last `evaluate`."""

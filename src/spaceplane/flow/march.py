@@ -10,8 +10,14 @@ import numpy as np
 from spaceplane.flow.ensemble import Ensemble
 from spaceplane.flow.settings import FlowSettings
 
-ACCELERATED_BELOW_MACH = 2.75
-"""Anderson acceleration drives blunt-base flows apart at Mach 3 and more; there plain iterations converge."""
+ACCELERATED_BELOW_MACH, ACCELERATED_AFTER_DROP = 2.0, 2.0
+"""Anderson acceleration drives blunt-base flows apart at Mach 2.5 and more, until they are close to steady."""
+
+HOLD_SENSOR_AFTER = 20
+"""Iterations after which, while the residual is near its best, the shock sensor may only rise: cells stop flipping."""
+
+REJECTED_RISE = 2.5
+"""A step after which the residual is this many times the last one is taken back."""
 
 
 @dataclass
@@ -58,42 +64,85 @@ def highest_cfl(mach: np.ndarray, caution: Caution) -> np.ndarray:
     return np.minimum(caution.cfl_max, 20.0 + np.clip((5.0 - mach) / 3.0, 0.0, 1.0) * max(caution.cfl_max - 20.0, 0.0))
 
 
-def feedback(
-    cfl: np.ndarray, best: np.ndarray, before: np.ndarray, now: np.ndarray, limited: np.ndarray, caution: Caution
-) -> np.ndarray:
-    """[lane] next CFL number: grows while the residual behaves.
+class Steering:
+    """What drives each lane: CFL number, memory of the residual, whether acceleration is trusted.
 
-    It falls when the residual jumps, has risen far above its best, or when many cells had to be held back.
+    Attributes:
+        cfl, ceiling: [lane] CFL number and the largest it may reach.
+        before, best: [lane] last and smallest residual; None before the first.
+        limited: [lane] share of cells held back in the last step.
+        trusted: [lane] whether Anderson acceleration may be used.
     """
-    grown = now / np.maximum(before, 1e-300)
-    factor = np.where(grown < 1.2, caution.growth, 1.0)
-    factor = np.where(limited > 3e-2, 1.0, factor)
-    factor = np.where(now > 4.0 * best, 0.8, factor)
-    factor = np.where((grown > 2.0) | (limited > 0.1), 0.5, factor)
-    return np.maximum(cfl * factor, min(0.5, caution.cfl_start))
+
+    def __init__(self, mach: np.ndarray, caution: Caution, impulsive: bool):
+        self.caution = caution
+        self.cfl = starting_cfl(mach, caution, impulsive)
+        self.ceiling = highest_cfl(mach, caution)
+        self.limited = np.zeros(len(mach))
+        self.trusted = mach < ACCELERATED_BELOW_MACH
+        self.before: np.ndarray | None = None
+        self.best: np.ndarray | None = None
+
+    def rejected(self, norms: np.ndarray) -> np.ndarray:
+        """[lane] whether the last step made things so much worse that it is taken back; its CFL number falls."""
+        if self.before is None:
+            return np.zeros(len(norms), dtype=bool)
+        bad = ~(norms < REJECTED_RISE * self.before) & (self.cfl > 1.0)
+        self.cfl = np.where(bad, np.maximum(0.3 * self.cfl, 1.0), self.cfl)
+        return bad
+
+    def advance(self, norms: np.ndarray, drop: np.ndarray) -> np.ndarray:
+        """Take in the residuals and their drop in decades; [lane] whether the next step may be accelerated."""
+        calm = np.ones(len(norms), dtype=bool)
+        if self.before is not None:
+            self.cfl = np.minimum(self.feedback(norms), self.ceiling)
+            # Once the residual has risen well above its best, the condition goes on without acceleration.
+            self.trusted &= norms < 2.0 * self.best
+            self.trusted |= (drop > ACCELERATED_AFTER_DROP) & (norms < 1.2 * self.best)
+            calm = self.trusted & (norms < 1.5 * self.before)
+        self.best = norms if self.best is None else np.minimum(self.best, norms)
+        self.before = norms
+        return calm
+
+    def feedback(self, now: np.ndarray) -> np.ndarray:
+        """[lane] next CFL number: grows while the residual behaves.
+
+        It falls when the residual jumps, has risen far above its best, or when many cells had to be held back.
+        """
+        grown = now / np.maximum(self.before, 1e-300)
+        factor = np.where(grown < 1.2, self.caution.growth, 1.0)
+        factor = np.where(self.limited > 2e-3, 1.0, factor)
+        factor = np.where(self.limited > 2e-2, 0.7, factor)
+        factor = np.where(now > 4.0 * self.best, 0.8, factor)
+        factor = np.where((grown > 2.0) | (self.limited > 0.1), 0.5, factor)
+        return np.maximum(self.cfl * factor, min(0.5, self.caution.cfl_start))
+
+    def keep(self, source: np.ndarray) -> None:
+        """Keep the lanes `source` [new lane] only."""
+        for name in ("cfl", "ceiling", "limited", "trusted", "before", "best"):
+            setattr(self, name, getattr(self, name)[source])
 
 
 def converged(history: History, settings: FlowSettings) -> bool:
     """Whether a condition is good on the fine mesh: residual and force window together.
 
-    Either the residual fell by `residual_drop` with forces within ten times the tolerance, or by half a decade more
-    than
-    `least_drop` with forces standing over one window, or by `least_drop` with forces standing over three.
+    Either the residual fell by `residual_drop` with forces within twice the tolerance, or by half a decade more than
+    `least_drop` with forces standing over two windows, or by `least_drop` with forces standing over three.
     """
     window, tolerance, drop = settings.window, settings.force_tolerance, history.drop()
     length = len(history.residual)
     if length <= window:
         return False
     if drop >= settings.residual_drop:
-        return history.spread(window) < 10 * tolerance
+        return history.spread(window) < 2 * tolerance
     if drop >= settings.least_drop + 0.5:
-        return history.spread(window) < tolerance
+        return length > 2 * window and history.spread(2 * window) < tolerance
     return drop >= settings.least_drop and length > 3 * window and history.spread(3 * window) < tolerance
 
 
 def stalled(history: History, settings: FlowSettings) -> bool:
-    """Whether more iterations bring nothing: no better residual for four windows while forces wander within a bound."""
-    span = 4 * settings.window
+    """Whether more iterations bring nothing: no better residual for six windows while forces wander within a bound."""
+    span = 6 * settings.window
     if len(history.residual) <= 2 * span:
         return False
     return min(history.residual[-span:]) > 0.8 * min(history.residual[:-span]) and history.spread(span) < 0.02
@@ -125,13 +174,13 @@ def march(
         History by condition.
     """
     histories = {int(c): History() for c in ensemble.lanes[: ensemble.count]}
-    cfl = starting_cfl(ensemble.conditions.mach[ensemble.lanes], caution, impulsive)
-    before = best = None
-    ceiling = highest_cfl(ensemble.conditions.mach[ensemble.lanes], caution)
-    limited = np.zeros(len(ensemble.lanes))
-    trusted = ensemble.conditions.mach[ensemble.lanes] < ACCELERATED_BELOW_MACH
+    steering = Steering(ensemble.conditions.mach[ensemble.lanes], caution, impulsive)
     for iteration in range(iterations + 1):
         norms = ensemble.evaluate()
+        rejected = steering.rejected(norms)
+        if rejected.any():
+            ensemble.undo(rejected)
+            norms = ensemble.evaluate()
         forces = ensemble.forces()
         leaving = []
         for lane in range(ensemble.count):
@@ -146,24 +195,18 @@ def march(
                 finish(condition, ensemble, lane, history)
                 leaving.append(lane)
         staying = np.setdiff1d(np.arange(ensemble.count), leaving)
-        worst = min((histories[int(ensemble.lanes[k])].drop() for k in range(ensemble.count)), default=0.0)
-        tick(iteration, len(staying), worst)
+        drop = np.array([histories[int(c)].drop() for c in ensemble.lanes])
+        tick(iteration, len(staying), float(drop.min()))
         if not len(staying):
             break
-        calm = np.ones(len(norms), dtype=bool)
-        if before is not None:
-            cfl = np.minimum(feedback(cfl, best, before, norms, limited, caution), ceiling)
-            # Once the residual has risen well above its best, the condition goes on without acceleration.
-            trusted &= norms < 2.0 * best
-            calm = trusted & (norms < 1.5 * before)
-        best = norms if best is None else np.minimum(best, norms)
-        before = norms
+        calm = steering.advance(norms, drop)
+        ensemble.hold[:] = (iteration >= HOLD_SENSOR_AFTER) & (norms < 2.0 * steering.best)
         if leaving:
-            source = np.concatenate([staying, np.full(len(ensemble.lanes) - len(staying), staying[-1])])
             ensemble.keep(staying)
-            source = source[: len(ensemble.lanes)]
-            cfl, before, best, calm, ceiling, trusted = (x[source] for x in (cfl, before, best, calm, ceiling, trusted))
+            source = np.concatenate([staying, np.full(len(ensemble.lanes) - len(staying), staying[-1])])
+            calm = calm[source]
+            steering.keep(source)
             ensemble.evaluate()
-        ensemble.correct(cfl)
-        limited = ensemble.apply(caution.largest, calm)
+        ensemble.correct(steering.cfl)
+        steering.limited = ensemble.apply(caution.largest, calm)
     return histories

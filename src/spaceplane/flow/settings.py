@@ -27,6 +27,8 @@ class FlowSettings:
         limiter: name in `limiters.LIMITERS`.
         limiter_constant: Venkatakrishnan's K on the body length; variations below (K h / L)^1.5 of the local scale
             are left alone.
+        wake_calming: most that slopes are reduced by in dead water behind blunt bases (see `deadwater`); 0 switches it
+            off.
         low_mach: local Mach number below which the low-Mach correction stops shrinking the normal jump; 1 switches it
             off.
         wall_stiffness: share of the acoustic response to flow through the wall added to the wall pressure (0 to 1).
@@ -49,19 +51,20 @@ class FlowSettings:
     order: int = 2
     flux: str = "blend"
     limiter: str = "venkatakrishnan"
-    limiter_constant: float = 1.0
+    limiter_constant: float = 20.0
+    wake_calming: float = 1.0
     low_mach: float = 0.05
     wall_stiffness: float = 0.0
     cfl_start: float = 25.0
     cfl_max: float = 100.0
     sweeps: int = 2
     anderson_depth: int = 5
-    iterations: int = 120
+    iterations: int = 150
     coarse_iterations: int = 60
     coarse_levels: int = 3
     residual_drop: float = 3.0
     least_drop: float = 1.5
-    force_tolerance: float = 1e-3
+    force_tolerance: float = 5e-4
     window: int = 10
 
     def __post_init__(self) -> None:
@@ -72,6 +75,7 @@ class FlowSettings:
             raise InputError(f"order: {self.order} is not allowed; 1 or 2")
         for name, low, high in (
             ("limiter_constant", 0.0, 1e3),
+            ("wake_calming", 0.0, 1.0),
             ("low_mach", 0.0, 1.0),
             ("wall_stiffness", 0.0, 1.0),
             ("cfl_start", 0.05, 1e4),

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -67,7 +66,6 @@ def solve(
     retry = np.array([c for c in range(len(conditions)) if job.worth_retry(c)], dtype=int)
     if len(retry):
         say("retry", 0, len(retry), f"{len(retry)} conditions once more, carefully")
-        job.settings = replace(settings, limiter_constant=0.3 * settings.limiter_constant)
         for which in np.array_split(retry, -(-len(retry) // WIDTH)):
             job.run(which, Caution(min(5.0, settings.cfl_start), min(25.0, settings.cfl_max), 1.2, 0.25), seconds)
     if cold:
@@ -101,7 +99,7 @@ class _Job:
         self.histories: dict[int, History] = {}
 
     def worth_retry(self, condition: int) -> bool:
-        """A condition that broke, or whose residual hardly fell: again with smaller steps and a stricter limiter."""
+        """A condition that broke, or whose residual hardly fell: again with smaller steps."""
         history = self.histories[condition]
         return bool(history.failure) or (not converged(history, self.settings) and history.drop() < 0.8)
 
