@@ -1,0 +1,83 @@
+"""Dead water, the shock sensor, the ceiling of total enthalpy and steps taken back."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from spaceplane.flow.deadwater import dead_water
+from spaceplane.flow.march import Caution, Steering
+from spaceplane.flow.reconstruction import shock_weight
+
+from .structured import sphere
+from .test_topology import ensemble_on
+
+GAMMA = 1.4
+
+
+def calming(speed, pressure, mach):
+    """Dead-water weight where the air has this speed (on V_inf) and Cp."""
+    p0 = 1.0 / GAMMA
+    weight = getattr(dead_water, "py_func", dead_water)
+    values = (speed * mach, 0.0, 0.0, p0 + 0.5 * mach**2 * pressure, p0, 2.0 / mach**2, 1.0)
+    return weight(*(np.float64(v) for v in values))
+
+
+@pytest.mark.parametrize("mach", [0.3, 0.8, 2.5, 10.0])
+def test_attached_flow_is_no_dead_water(mach):
+    """Stagnation point, free stream and an isentropic expansion to twice the Mach number keep their slopes."""
+    ratio = (1 + 0.2 * mach**2) / (1 + 0.8 * mach**2)
+    stagnation = ((1 + 0.2 * mach**2) ** 3.5 - 1) / (0.7 * mach**2) if mach < 1 else 1.5
+    assert calming(0.0, stagnation, mach) == 0.0
+    assert calming(1.0, 0.0, mach) == 0.0
+    assert calming(2 * np.sqrt(ratio), (ratio**3.5 - 1) / (0.7 * mach**2), mach) == 0.0
+
+
+@pytest.mark.parametrize("mach", [0.3, 0.8, 2.5, 10.0])
+def test_still_air_at_base_pressure_is_calmed(mach):
+    assert calming(0.1, -0.1 / mach, mach) == 1.0
+    assert 0.0 < calming(0.6, 0.0, mach) < 1.0
+
+
+def test_the_shock_sensor_needs_compression_and_has_no_jump():
+    weight = getattr(shock_weight, "py_func", shock_weight)
+    at = [weight(*(np.float64(v) for v in (4.0, c, 0.0, 1.0))) for c in (-0.5, 0.0, 0.1, 0.2, 1.0)]
+    assert at == pytest.approx([0.0, 0.0, 0.5, 1.0, 1.0])
+    assert weight(*(np.float64(v) for v in (2.4, 1.0, 0.0, 1.0))) == 0.0
+
+
+def test_a_step_cannot_heat_air_beyond_the_ceiling_nor_break_it():
+    ensemble = ensemble_on(sphere(6, 6))
+    before = ensemble.state.copy()
+    ensemble.change[:, 4] = 0.5 * before[:, 4]
+    ensemble.change[3] = np.nan
+    limited = ensemble.apply(0.4, np.zeros(len(ensemble.lanes), dtype=bool))
+    r, u, v, w, p = np.moveaxis(ensemble.state, 1, 0)
+    enthalpy = GAMMA / (GAMMA - 1) * p / r + 0.5 * (u**2 + v**2 + w**2)
+    free = 1 / (GAMMA - 1) + 0.5 * ensemble.conditions.mach[ensemble.lanes] ** 2
+    assert (enthalpy <= 1.2 * free * (1 + 1e-12)).all()
+    np.testing.assert_array_equal(ensemble.state[3], before[3])
+    np.testing.assert_allclose(ensemble.state[:, 0], np.where(np.arange(len(before))[:, None] == 3, before[3, 0], r))
+    # At Mach 0.3 heat is most of the enthalpy, so that the ceiling is met; at Mach 10 it is next to nothing.
+    assert limited[0] > 0.9 and limited[2] < 0.1
+
+
+def test_a_step_taken_back_restores_its_lane_only():
+    ensemble = ensemble_on(sphere(6, 6))
+    before = ensemble.state.copy()
+    ensemble.change[:, 0] = 0.01
+    ensemble.apply(0.4, np.zeros(len(ensemble.lanes), dtype=bool))
+    after = ensemble.state.copy()
+    ensemble.undo(np.arange(len(ensemble.lanes)) == 1)
+    np.testing.assert_allclose(ensemble.state[:, :, 1], before[:, :, 1], rtol=1e-12)
+    np.testing.assert_array_equal(ensemble.state[:, :, 0], after[:, :, 0])
+
+
+def test_a_jump_of_the_residual_is_rejected_once_the_cfl_can_fall():
+    steering = Steering(np.array([0.8, 0.8]), Caution(25.0, 100.0), impulsive=False)
+    first = np.array([1.0, 1.0])
+    assert not steering.rejected(first).any()
+    steering.advance(first, np.zeros(2))
+    cfl = steering.cfl.copy()
+    np.testing.assert_array_equal(steering.rejected(np.array([0.9, np.nan])), [False, True])
+    np.testing.assert_allclose(steering.cfl, cfl * [1.0, 0.3])
