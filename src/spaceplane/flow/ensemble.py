@@ -24,6 +24,11 @@ HIGHEST_ENTHALPY = 1.2
 """Total enthalpy that a transient may reach in a cell, on the free stream's."""
 
 
+def padded(conditions: int) -> int:
+    """Lanes of an ensemble of this many conditions: full vectors."""
+    return LANE_UNIT * -(-conditions // LANE_UNIT)
+
+
 def free_stream(conditions: FlowConditions) -> np.ndarray:
     """[5, condition] rho, u, v, w, p in the scaled units of `Solution`."""
     count = len(conditions)
@@ -65,10 +70,10 @@ class Ensemble:
 
     def allocate(self, active: np.ndarray) -> None:
         """Make arrays for the conditions `active`, state at the free stream."""
-        padded = LANE_UNIT * -(-len(active) // LANE_UNIT)
-        self.lanes = np.concatenate([active, np.full(padded - len(active), active[-1], dtype=active.dtype)])
+        lanes = padded(len(active))
+        self.lanes = np.concatenate([active, np.full(lanes - len(active), active[-1], dtype=active.dtype)])
         self.count = len(active)
-        cells, lanes, dtype = self.mesh.cells, padded, self.dtype
+        cells, dtype = self.mesh.cells, self.dtype
         self.free = np.ascontiguousarray(free_stream(self.conditions)[:, self.lanes], dtype=dtype)
         self.state = np.empty((cells, 5, lanes), dtype)
         self.state[:] = self.free

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from spaceplane.flow.ensemble import Ensemble
+from spaceplane.flow.ensemble import Ensemble, padded
 from spaceplane.flow.settings import FlowSettings
 
 ACCELERATED_BELOW_MACH, ACCELERATED_AFTER_DROP = 2.0, 2.0
@@ -175,15 +175,15 @@ def march(
     """
     histories = {int(c): History() for c in ensemble.lanes[: ensemble.count]}
     steering = Steering(ensemble.conditions.mach[ensemble.lanes], caution, impulsive)
+    active = np.arange(len(ensemble.lanes)) < ensemble.count
     for iteration in range(iterations + 1):
         norms = ensemble.evaluate()
-        rejected = steering.rejected(norms)
+        rejected = steering.rejected(norms) & active
         if rejected.any():
             ensemble.undo(rejected)
             norms = ensemble.evaluate()
         forces = ensemble.forces()
-        leaving = []
-        for lane in range(ensemble.count):
+        for lane in np.flatnonzero(active):
             condition = int(ensemble.lanes[lane])
             history = histories[condition]
             history.residual.append(float(norms[lane]))
@@ -193,17 +193,19 @@ def march(
             history.done = not history.failure and stop(history)
             if history.failure or history.done or iteration == iterations:
                 finish(condition, ensemble, lane, history)
-                leaving.append(lane)
-        staying = np.setdiff1d(np.arange(ensemble.count), leaving)
+                active[lane] = False
+        staying = np.flatnonzero(active)
         drop = np.array([histories[int(c)].drop() for c in ensemble.lanes])
         tick(iteration, len(staying), float(drop.min()))
         if not len(staying):
             break
         calm = steering.advance(norms, drop)
         ensemble.hold[:] = (iteration >= HOLD_SENSOR_AFTER) & (norms < 2.0 * steering.best)
-        if leaving:
+        # Copying all arrays is dear: lanes that are done run on unread until a whole vector of them can go.
+        if padded(len(staying)) < len(ensemble.lanes):
             ensemble.keep(staying)
             source = np.concatenate([staying, np.full(len(ensemble.lanes) - len(staying), staying[-1])])
+            active = np.arange(len(ensemble.lanes)) < ensemble.count
             calm = calm[source]
             steering.keep(source)
             ensemble.evaluate()
