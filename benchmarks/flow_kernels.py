@@ -37,7 +37,7 @@ def time_kernels(mesh: Mesh, conditions: int, precision: str, repeats: int = 5) 
     steps = {
         "gradients": ensemble.reconstruct,
         "fluxes": ensemble.balance,
-        "diagonals": lambda: ensemble.factorise(cfl),
+        "diagonals": lambda: ensemble.factorise(cfl, calm),
         "two sweeps": ensemble.relax,
         "acceleration and update": lambda: ensemble.apply(0.0, calm),
         "forces": ensemble.forces,

@@ -6,7 +6,14 @@ import numpy as np
 import pytest
 
 from spaceplane.flow import implicit, jacobian
+from spaceplane.flow.compiled import LANES
+from spaceplane.flow.ensemble import Ensemble
 from spaceplane.flow.fluxes import blend
+from spaceplane.flow.settings import FlowSettings
+from spaceplane.flow.solution import FlowConditions
+from spaceplane.flow.topology import prepare
+
+from .structured import box
 
 GAMMA = 1.4
 STATE = np.array([1.3, 0.4, -0.7, 0.2, 0.9])
@@ -67,23 +74,58 @@ def test_blocks_hold_the_same_matrices_as_the_products():
     r, u, v, w, p = STATE
     a, un = np.sqrt(GAMMA * p / r), STATE[1:4] @ NORMAL
     d = jacobian.wave_dissipation.py_func(un, a, 0.3)
-    block = np.zeros((25, 1))
-    implicit.add_dissipation.py_func(block, 0, 1.7, r, u, v, w, a, un, *d, *NORMAL, GAMMA)
+    lane = 3
+    block = np.zeros((25, LANES))
+    implicit.add_dissipation.py_func(block.reshape(-1), lane, 1.7, r, u, v, w, a, un, *d, *NORMAL, GAMMA)
     product = columns(lambda *x: jacobian.dissipation_increment.py_func(r, u, v, w, a, *d, *x, *NORMAL, GAMMA))
-    np.testing.assert_allclose(block.reshape(5, 5), 1.7 * product, atol=1e-12)
+    np.testing.assert_allclose(block[:, lane].reshape(5, 5), 1.7 * product, atol=1e-12)
     block[:] = 0.0
-    implicit.add_flux.py_func(block, 0, -0.6, r, u, v, w, p, *NORMAL, GAMMA)
+    implicit.add_flux.py_func(block.reshape(-1), lane, -0.6, r, u, v, w, p, *NORMAL, GAMMA)
     product = columns(lambda *x: jacobian.flux_increment.py_func(*STATE, *x, *NORMAL, GAMMA))
-    np.testing.assert_allclose(block.reshape(5, 5), -0.6 * product, atol=1e-12)
+    np.testing.assert_allclose(block[:, lane].reshape(5, 5), -0.6 * product, atol=1e-12)
     block[:] = 0.0
-    implicit.add_mass.py_func(block, 0, 2.0, r, u, v, w, GAMMA)
-    np.testing.assert_allclose(block.reshape(5, 5), 2.0 * differences(conserved, STATE), atol=1e-8)
+    implicit.add_mass.py_func(block.reshape(-1), lane, 2.0, r, u, v, w, GAMMA)
+    np.testing.assert_allclose(block[:, lane].reshape(5, 5), 2.0 * differences(conserved, STATE), atol=1e-8)
+    assert not np.delete(block, lane, axis=1).any()
 
 
 def test_inverse_blocks():
     rng = np.random.default_rng(3)
-    block = rng.normal(size=(25, 4)) + 4.0 * np.eye(5).reshape(25, 1)
+    block = rng.normal(size=(25, LANES)) + 4.0 * np.eye(5).reshape(25, 1)
     inverse = block.copy()
-    implicit.invert.py_func(inverse, 4)
-    product = np.einsum("ikn,kjn->ijn", block.reshape(5, 5, 4), inverse.reshape(5, 5, 4))
-    np.testing.assert_allclose(product, np.repeat(np.eye(5)[:, :, None], 4, axis=2), atol=1e-12)
+    implicit.invert(inverse.reshape(-1))
+    product = np.einsum("ikn,kjn->ijn", block.reshape(5, 5, -1), inverse.reshape(5, 5, -1))
+    np.testing.assert_allclose(product, np.repeat(np.eye(5)[:, :, None], LANES, axis=2), atol=1e-12)
+
+
+def test_sweeps_are_symmetric_gauss_seidel():
+    """Two passes that share their products against two plain ones, from a matrix put together entry by entry."""
+    mesh = box((4, 3, 3), 0.2)
+    conditions = FlowConditions(np.array([0.7]), np.array([0.2]), np.array([0.1]))
+    settings = FlowSettings(precision="double", sweeps=2)
+    ensemble = Ensemble(mesh, prepare(mesh, np.float64), conditions, settings, 2)
+    ensemble.state *= np.random.default_rng(4).uniform(0.9, 1.1, ensemble.state.shape)
+    ensemble.evaluate()
+    ensemble.sensor[:] = 0.3
+    ensemble.correct(np.full(LANES, 10.0))
+
+    t, lane = ensemble.topology, 0
+    state, right = ensemble.state[:, :, lane], -ensemble.residual[:, :, lane]
+    inverse = ensemble.inverse.reshape(mesh.cells, 5, 5, LANES)[..., lane]
+    rows = [{} for _ in range(mesh.cells)]
+    for i in range(mesh.cells):
+        for e in range(t.start[i], t.start[i + 1]):
+            j, n = t.other[e], t.normal[e]
+            *middle, _ = mean = jacobian.face_average.py_func(*state[i], *state[j], *n, GAMMA)
+            waves = jacobian.wave_dissipation.py_func(mean[5], mean[4], 0.3)
+            flux = columns(lambda *x, j=j, n=n: jacobian.flux_increment.py_func(*state[j], *x, *n, GAMMA))
+            spread = columns(
+                lambda *x, m=middle, w=waves, n=n: jacobian.dissipation_increment.py_func(*m, *w, *x, *n, GAMMA)
+            )
+            rows[i][j] = 0.5 * t.area[e] * (flux - spread)
+    visited = np.concatenate([np.arange(t.block_cells[b], t.block_cells[b + 1]) for b in t.color_blocks])
+    change = np.zeros((mesh.cells, 5))
+    for order in (visited, visited[::-1]) * settings.sweeps:
+        for i in order:
+            change[i] = inverse[i] @ (right[i] - sum(block @ change[j] for j, block in rows[i].items()))
+    np.testing.assert_allclose(ensemble.change[:, :, lane], change, rtol=1e-9, atol=1e-13)

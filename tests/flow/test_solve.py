@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from spaceplane.errors import InputError
+from spaceplane.flow.compiled import LANES
 from spaceplane.flow.ensemble import Ensemble
 from spaceplane.flow.settings import FlowSettings
 from spaceplane.flow.solution import FlowConditions
@@ -41,6 +42,19 @@ def test_a_condition_alone_equals_itself_in_an_ensemble(family):
     assert alone.records[0].iterations == family.records[1].iterations
     np.testing.assert_allclose(alone.wall_pressure[:, 0], family.wall_pressure[:, 1], rtol=2e-4)
     np.testing.assert_allclose(force(alone)[0], force(family)[1], rtol=1e-4, atol=1e-4)
+
+
+def test_conditions_that_wait_for_a_lane_equal_themselves_alone():
+    """More conditions than lanes: the last ones begin when others are done, in lanes with another's past."""
+    many = LANES + 3
+    together = solve(MESH, conditions(np.linspace(1.4, 3.0, many), np.linspace(0.0, 12.0, many)), SMALL)
+    assert sum(record.good for record in together.records) > 0.9 * many
+    c = together.conditions
+    for k in (0, many - 2, many - 1):
+        assert together.records[k].good
+        alone = solve(MESH, FlowConditions(c.mach[[k]], c.alpha[[k]], c.beta[[k]]), SMALL)
+        assert alone.records[0].iterations == together.records[k].iterations
+        np.testing.assert_allclose(force(alone)[0], force(together)[k], rtol=1e-4, atol=1e-4)
 
 
 def test_state_shapes_and_precision(family):

@@ -36,8 +36,8 @@ def test_gradients_of_linear_fields_are_exact(mesh):
     center = mesh.cell_center[ensemble.topology.order]
     ensemble.state += (center @ slopes.T)[:, :, None]
     ensemble.reconstruct()
-    found = ensemble.gradient.reshape(mesh.cells, 5, 3, -1)
-    np.testing.assert_allclose(found, np.broadcast_to(slopes[None, :, :, None], found.shape), atol=1e-10)
+    found = ensemble.gradient.reshape(mesh.cells, 3, 5, -1)
+    np.testing.assert_allclose(found, np.broadcast_to(slopes.T[None, :, :, None], found.shape), atol=1e-10)
 
 
 def test_conservation_interior_fluxes_cancel():

@@ -23,7 +23,6 @@ PHASES = {
     "fine": (0.25, 0.97),
     "retry": (0.97, 0.97),
 }
-FINE_SHARE = 0.6  # a fine march usually ends at about this share of the iterations it may take
 BASE_SHARE = 0.55  # of an analysis with control derivatives: the base body has most conditions
 
 
@@ -57,7 +56,7 @@ def _whole(show: Show, bodies: int) -> Tell:
         if low is not None:
             if body not in begun:
                 begun.append(body)
-            share = min(done / max(total, 1) / (FINE_SHARE if phase == "fine" else 1.0), 1.0)
+            share = min(done / max(total, 1), 1.0)
             reached = max(reached, _fraction(begun.index(body), low + share * (high - low), bodies))
         elif begun:
             reached = max(reached, 0.97 if len(begun) >= bodies else reached)

@@ -11,49 +11,87 @@ import math
 import numpy as np
 from numba import prange
 
-from spaceplane.flow.compiled import WIDTH, inlined, kernel
+from spaceplane.flow.compiled import LANES, PRS, RHO, ROW, VX, VY, VZ, distinct, inlined, kernel
 from spaceplane.flow.topology import Topology
+
+
+@distinct
+def difference_chunk(
+    first,
+    last,
+    change,
+    last_change,
+    last_step,
+    known,
+    scale,
+    slot,
+    slots,
+    differences,
+    combined,
+    products,
+    gram,
+    f,
+    d,
+):
+    """The part of `record_difference` for cells `first` to `last`; `f`, `d` scratch rows."""
+    zero = type(scale[0])(0)
+    for i in range(first, last):
+        for m in range(ROW):
+            new = change[i, m]
+            difference = new - last_change[i, m] if known[m] > zero else zero
+            differences[i, slot, m] = difference
+            combined[i, slot, m] = difference + last_step[i, m] if known[m] > zero else zero
+            f[m] = new * scale[m] * scale[m]
+            d[m] = difference * scale[m] * scale[m]
+        for s in range(slots):
+            for n in range(LANES):
+                b = zero
+                g = zero
+                for k in range(0, ROW, LANES):
+                    value = differences[i, s, k + n]
+                    b += value * f[k + n]
+                    g += value * d[k + n]
+                products[s, n] += b
+                gram[s, n] += g
 
 
 @kernel
 def record_difference(
-    topology, change, last_change, last_step, scale, slot, slots, differences, combined, products, gram
+    topology, change, last_change, last_step, known, scale, slot, slots, differences, combined, products, gram
 ):
     """Store the newest differences and their inner products.
 
     Args:
-        change, last_change, last_step: [cell, 5, lane] this and the last change, and the step last applied.
-        scale: [5, lane] weights of the variables in the inner product.
+        change, last_change, last_step: [cell, 5 x lane] this and the last change, and the step last applied.
+        known: [5 x lane] 0 where the last change and step are of no use: their difference is stored as zero.
+        scale: [5 x lane] weights of the variables in the inner product.
         slot: where the newest difference goes; `slots` are in use.
-        differences: [cell, slot, 5, lane] differences of the change; `combined`: plus those of the state.
+        differences: [cell, slot, 5 x lane] differences of the change; `combined`: plus those of the state.
         products: [chunk, slot, lane] fp64, <difference, change>; gram: the same with the newest difference.
     """
-    lanes = change.shape[2]
     chunk_cells = topology.chunk_cells
     for chunk in prange(chunk_cells.shape[0] - 1):
-        b = np.zeros((slots, WIDTH), np.float64)
-        g = np.zeros((slots, WIDTH), np.float64)
-        f = np.empty((5, WIDTH), change.dtype)
-        d = np.empty((5, WIDTH), change.dtype)
-        for i in range(chunk_cells[chunk], chunk_cells[chunk + 1]):
-            for k in range(5):
-                for n in range(lanes):
-                    difference = change[i, k, n] - last_change[i, k, n]
-                    differences[i, slot, k, n] = difference
-                    combined[i, slot, k, n] = difference + last_step[i, k, n]
-                    d[k, n] = difference * scale[k, n]
-                    f[k, n] = change[i, k, n] * scale[k, n]
-            for s in range(slots):
-                for n in range(lanes):
-                    d0 = differences[i, s, 0, n] * scale[0, n]
-                    d1 = differences[i, s, 1, n] * scale[1, n]
-                    d2 = differences[i, s, 2, n] * scale[2, n]
-                    d3 = differences[i, s, 3, n] * scale[3, n]
-                    d4 = differences[i, s, 4, n] * scale[4, n]
-                    b[s, n] += d0 * f[0, n] + d1 * f[1, n] + d2 * f[2, n] + d3 * f[3, n] + d4 * f[4, n]
-                    g[s, n] += d0 * d[0, n] + d1 * d[1, n] + d2 * d[2, n] + d3 * d[3, n] + d4 * d[4, n]
-        products[chunk] = b[:, :lanes]
-        gram[chunk] = g[:, :lanes]
+        f = np.empty(ROW, change.dtype)
+        d = np.empty(ROW, change.dtype)
+        products[chunk] = 0.0
+        gram[chunk] = 0.0
+        difference_chunk(
+            chunk_cells[chunk],
+            chunk_cells[chunk + 1],
+            change,
+            last_change,
+            last_step,
+            known,
+            scale,
+            slot,
+            slots,
+            differences,
+            combined,
+            products[chunk],
+            gram[chunk],
+            f,
+            d,
+        )
 
 
 @inlined
@@ -64,11 +102,75 @@ def cooling(u, v, w, r, p, gamma, ceiling):
     return min(real(1), ceiling / enthalpy)
 
 
+@distinct
+def step_chunk(
+    first,
+    last,
+    rows,
+    change,
+    last_change,
+    last_step,
+    combined,
+    weights,
+    slots,
+    largest,
+    gamma,
+    ceiling,
+    count,
+    step,
+    factor,
+):
+    """The part of `apply_step` for cells `first` to `last`; `step`, `factor` scratch rows."""
+    real = type(largest)
+    zero = real(0)
+    one = real(1)
+    half = real(0.5)
+    for i in range(first, last):
+        for m in range(ROW):
+            new = change[i, m]
+            step[m] = new
+            last_change[i, m] = new
+        for s in range(slots):
+            for m in range(ROW):
+                step[m] -= weights[s, m] * combined[i, s, m]
+        for n in range(LANES):
+            x = step[RHO + n] / rows[i, RHO + n]
+            y = step[PRS + n] / rows[i, PRS + n]
+            size = max(max(-x, half * x), max(-y, half * y))
+            share = largest / size if size > largest else one
+            # Not a number compares false.
+            share = share if size < real(1e30) else zero
+            count[n] += one if share < one else zero
+            factor[RHO + n] = share
+            factor[VX + n] = share
+            factor[VY + n] = share
+            factor[VZ + n] = share
+            factor[PRS + n] = share
+        for m in range(ROW):
+            step[m] = factor[m] * step[m] if factor[m] > zero else zero
+        for n in range(LANES):
+            r = rows[i, RHO + n] + step[RHO + n]
+            u = rows[i, VX + n] + step[VX + n]
+            v = rows[i, VY + n] + step[VY + n]
+            w = rows[i, VZ + n] + step[VZ + n]
+            p = rows[i, PRS + n] + step[PRS + n]
+            cool = cooling(u, v, w, r, p, gamma, ceiling[n])
+            slow = math.sqrt(cool)
+            count[n] += one if cool < one else zero
+            step[VX + n] = slow * u - rows[i, VX + n]
+            step[VY + n] = slow * v - rows[i, VY + n]
+            step[VZ + n] = slow * w - rows[i, VZ + n]
+            step[PRS + n] = cool * p - rows[i, PRS + n]
+        for m in range(ROW):
+            last_step[i, m] = step[m]
+            rows[i, m] += step[m]
+
+
 @kernel
 def apply_step(
     topology, state, change, last_change, last_step, combined, weights, slots, largest, gamma, ceiling, limited
 ):
-    """state += change - sum of weights[slot, lane] combined[:, slot], held within physical bounds cell by cell.
+    """state += change - sum of weights[slot, 5 x lane] combined[:, slot], held within physical bounds cell by cell.
 
     The step is scaled so that density and pressure fall by at most `largest` of themselves and rise by twice that, and
     left out where it is not a number; then the total enthalpy is brought down to `ceiling` [lane] at unchanged density
@@ -77,88 +179,88 @@ def apply_step(
 
     Keeps the change and the step for the next call. `limited` [chunk, lane] counts cells that were held back.
     """
-    lanes = state.shape[2]
+    rows = state.reshape(state.shape[0], ROW)
+    changes = change.reshape(state.shape[0], ROW)
     chunk_cells = topology.chunk_cells
     for chunk in prange(chunk_cells.shape[0] - 1):
-        count = np.zeros(lanes, state.dtype)
-        step = np.empty((5, WIDTH), state.dtype)
-        for i in range(chunk_cells[chunk], chunk_cells[chunk + 1]):
-            for k in range(5):
-                for n in range(lanes):
-                    step[k, n] = change[i, k, n]
-                    last_change[i, k, n] = change[i, k, n]
-            for s in range(slots):
-                for k in range(5):
-                    for n in range(lanes):
-                        step[k, n] -= weights[s, n] * combined[i, s, k, n]
-            for n in range(lanes):
-                real = type(largest)
-                x = step[0, n] / state[i, 0, n]
-                y = step[4, n] / state[i, 4, n]
-                size = max(max(real(-1) * x, real(0.5) * x), max(real(-1) * y, real(0.5) * y))
-                factor = largest / size if size > largest else real(1)
-                count[n] += real(1) if size > largest else real(0)
-                sound = size < real(1e30)
-                for k in range(5):
-                    last_step[i, k, n] = state[i, k, n]
-                    state[i, k, n] += factor * step[k, n] if sound else real(0)
-                cool = cooling(
-                    state[i, 1, n], state[i, 2, n], state[i, 3, n], state[i, 0, n], state[i, 4, n], gamma, ceiling[n]
-                )
-                slow = math.sqrt(cool)
-                state[i, 1, n] *= slow
-                state[i, 2, n] *= slow
-                state[i, 3, n] *= slow
-                state[i, 4, n] *= cool
-                count[n] += real(1) if cool < real(1) else real(0)
-            for k in range(5):
-                for n in range(lanes):
-                    last_step[i, k, n] = state[i, k, n] - last_step[i, k, n]
-        limited[chunk] = count
+        step = np.empty(ROW, state.dtype)
+        factor = np.empty(ROW, state.dtype)
+        limited[chunk] = state.dtype.type(0)
+        step_chunk(
+            chunk_cells[chunk],
+            chunk_cells[chunk + 1],
+            rows,
+            changes,
+            last_change,
+            last_step,
+            combined,
+            weights,
+            slots,
+            largest,
+            gamma,
+            ceiling,
+            limited[chunk],
+            step,
+            factor,
+        )
 
 
 class Anderson:
-    """History of differences of an ensemble; depth 0 keeps nothing and applies the plain change."""
+    """History of differences of an ensemble; depth 0 keeps nothing and applies the plain change.
+
+    Attributes:
+        last_change, last_step: [cell, 5 x lane]; differences, combined: [cell, slot, 5 x lane].
+        known: [lane] whether the last change and step belong to the lane's present state.
+    """
 
     def __init__(self, cells: int, free: np.ndarray, depth: int, regularisation: float = 1e-6):
         """`free` [5, lane] sets the precision and, by its size, the weights of density, velocity and pressure."""
-        dtype, lanes = free.dtype, free.shape[1]
+        dtype = free.dtype
         self.depth, self.regularisation = depth, regularisation
         self.used = self.next = 0
-        self.started = False
-        self.last_change = np.zeros((cells, 5, lanes), dtype)
-        self.last_step = np.zeros((cells, 5, lanes), dtype)
-        self.differences = np.zeros((cells, max(depth, 1), 5, lanes), dtype)
-        self.combined = np.zeros((cells, max(depth, 1), 5, lanes), dtype)
-        self.gram = np.zeros((max(depth, 1), max(depth, 1), lanes))
-        speed = np.maximum(np.linalg.norm(free[1:4], axis=0), 1.0)
-        self.scale = np.stack([1.0 / free[0], 1 / speed, 1 / speed, 1 / speed, 1.0 / (free[0] * speed**2)]).astype(
-            dtype
-        )
+        self.known = np.zeros(LANES, dtype=bool)
+        self.last_change = np.zeros((cells, ROW), dtype)
+        self.last_step = np.zeros((cells, ROW), dtype)
+        self.differences = np.zeros((cells, max(depth, 1), ROW), dtype)
+        self.combined = np.zeros((cells, max(depth, 1), ROW), dtype)
+        self.gram = np.zeros((max(depth, 1), max(depth, 1), LANES))
+        self.scale = np.ones((5, LANES), dtype)
+        for lane in range(LANES):
+            self.weigh(lane, free)
 
-    def keep(self, source: np.ndarray) -> None:
-        """Keep the lanes `source` [new lane] only."""
-        for name in ("last_change", "last_step", "differences", "combined", "gram", "scale"):
-            setattr(self, name, np.ascontiguousarray(getattr(self, name)[..., source]))
+    def weigh(self, lane: int, free: np.ndarray) -> None:
+        """Set the weights of a lane's variables from its free stream."""
+        speed = max(float(np.linalg.norm(free[1:4, lane])), 1.0)
+        self.scale[:, lane] = 1.0, 1.0 / speed, 1.0 / speed, 1.0 / speed, 1.0 / speed**2
+
+    def forget(self, lane: int, free: np.ndarray) -> None:
+        """Begin anew in a lane that has been given to another condition."""
+        rows = slice(lane, ROW, LANES)
+        self.known[lane] = False
+        self.differences[:, :, rows] = 0
+        self.combined[:, :, rows] = 0
+        self.gram[:, :, lane] = 0
+        self.weigh(lane, free)
 
     def weights(self, topology: Topology, change: np.ndarray, calm: np.ndarray) -> np.ndarray:
-        """[slot, lane] weights of the stored differences; zero for lanes that are not `calm` (their residual
+        """[slot, 5 x lane] weights of the stored differences; zero for lanes that are not `calm` (their residual
         jumped)."""
-        lanes = change.shape[2]
-        if not self.depth or not self.started:
-            self.started = True
-            return np.zeros((max(self.depth, 1), lanes), change.dtype)
+        known = self.known.copy()
+        self.known[:] = True
+        if not self.depth or not known.any():
+            return np.zeros((max(self.depth, 1), ROW), change.dtype)
         slot = self.next
         self.next = (slot + 1) % self.depth
         self.used = min(self.used + 1, self.depth)
-        shape = (len(topology.chunk_cells) - 1, self.used, lanes)
-        products, gram = np.zeros(shape), np.zeros(shape)
+        shape = (len(topology.chunk_cells) - 1, self.used, LANES)
+        products, gram = np.empty(shape), np.empty(shape)
         record_difference(
             topology,
-            change,
+            change.reshape(-1, ROW),
             self.last_change,
             self.last_step,
-            self.scale,
+            np.tile(known, 5).astype(change.dtype),
+            self.scale.reshape(ROW),
             slot,
             self.used,
             self.differences,
@@ -179,6 +281,6 @@ class Anderson:
         matrix = matrix + (self.regularisation * trace)[:, None, None] * np.eye(self.used)
         matrix[~good] = np.eye(self.used)
         gamma = np.linalg.solve(matrix, np.where(good[:, None, None], right, 0.0))[..., 0]
-        weights = np.zeros((self.depth, lanes), change.dtype)
+        weights = np.zeros((self.depth, LANES), change.dtype)
         weights[: self.used] = gamma.T
-        return weights
+        return np.tile(weights, 5)

@@ -11,13 +11,13 @@ import math
 import numpy as np
 from numba import prange
 
-from spaceplane.flow.compiled import WIDTH, inlined, kernel
+from spaceplane.flow.compiled import LANES, PRS, RHO, ROW, VX, VY, VZ, distinct, inlined, kernel
 from spaceplane.flow.jacobian import dissipation_increment, face_average, flux_increment, wave_dissipation
 
 
 @inlined
 def add_dissipation(block, n, scale, r, u, v, w, a, un, d0, dp, dm, nx, ny, nz, gamma):
-    """Add scale * Q (see `jacobian.dissipation_increment`) to `block` [25, lane], row-major 5 row + column."""
+    """Add scale * Q (see `jacobian.dissipation_increment`) to `block` [25 x lane], row-major 5 row + column."""
     real = type(r)
     one = real(1)
     half = real(0.5)
@@ -27,44 +27,44 @@ def add_dissipation(block, n, scale, r, u, v, w, a, un, d0, dp, dm, nx, ny, nz, 
     mean = half * (dp + dm) * scale
     skew = half * (dp - dm) * scale
     # Column of rho: entropy wave only.
-    block[0, n] += d0
-    block[5, n] += d0 * u
-    block[10, n] += d0 * v
-    block[15, n] += d0 * w
-    block[20, n] += d0 * kinetic
+    block[0 * LANES + n] += d0
+    block[5 * LANES + n] += d0 * u
+    block[10 * LANES + n] += d0 * v
+    block[15 * LANES + n] += d0 * w
+    block[20 * LANES + n] += d0 * kinetic
     # Column of p.
     inverse = one / (a * a)
     s = (mean - d0) * inverse
     t = skew / a
-    block[4, n] += s
-    block[9, n] += u * s + nx * t
-    block[14, n] += v * s + ny * t
-    block[19, n] += w * s + nz * t
-    block[24, n] += enthalpy * mean * inverse - kinetic * d0 * inverse + un * t
+    block[4 * LANES + n] += s
+    block[9 * LANES + n] += u * s + nx * t
+    block[14 * LANES + n] += v * s + ny * t
+    block[19 * LANES + n] += w * s + nz * t
+    block[24 * LANES + n] += enthalpy * mean * inverse - kinetic * d0 * inverse + un * t
     # Columns of velocity: sound waves along n, shear across it.
     s = skew * r / a
     t = mean * r
     z = d0 * r
     tz = t - z
     eu = enthalpy * s + un * tz
-    block[1, n] += s * nx
-    block[2, n] += s * ny
-    block[3, n] += s * nz
+    block[1 * LANES + n] += s * nx
+    block[2 * LANES + n] += s * ny
+    block[3 * LANES + n] += s * nz
     su = u * s + nx * tz
     sv = v * s + ny * tz
     sw = w * s + nz * tz
-    block[6, n] += su * nx + z
-    block[7, n] += su * ny
-    block[8, n] += su * nz
-    block[11, n] += sv * nx
-    block[12, n] += sv * ny + z
-    block[13, n] += sv * nz
-    block[16, n] += sw * nx
-    block[17, n] += sw * ny
-    block[18, n] += sw * nz + z
-    block[21, n] += eu * nx + z * u
-    block[22, n] += eu * ny + z * v
-    block[23, n] += eu * nz + z * w
+    block[6 * LANES + n] += su * nx + z
+    block[7 * LANES + n] += su * ny
+    block[8 * LANES + n] += su * nz
+    block[11 * LANES + n] += sv * nx
+    block[12 * LANES + n] += sv * ny + z
+    block[13 * LANES + n] += sv * nz
+    block[16 * LANES + n] += sw * nx
+    block[17 * LANES + n] += sw * ny
+    block[18 * LANES + n] += sw * nz + z
+    block[21 * LANES + n] += eu * nx + z * u
+    block[22 * LANES + n] += eu * ny + z * v
+    block[23 * LANES + n] += eu * nz + z * w
 
 
 @inlined
@@ -77,83 +77,136 @@ def add_flux(block, n, scale, r, u, v, w, p, nx, ny, nz, gamma):
     stiff = gamma / (gamma - one)
     m = scale * r * un
     c = scale * un
-    block[0, n] += c
-    block[5, n] += c * u
-    block[10, n] += c * v
-    block[15, n] += c * w
-    block[20, n] += c * kinetic
-    block[9, n] += scale * nx
-    block[14, n] += scale * ny
-    block[19, n] += scale * nz
-    block[24, n] += c * stiff
+    block[0 * LANES + n] += c
+    block[5 * LANES + n] += c * u
+    block[10 * LANES + n] += c * v
+    block[15 * LANES + n] += c * w
+    block[20 * LANES + n] += c * kinetic
+    block[9 * LANES + n] += scale * nx
+    block[14 * LANES + n] += scale * ny
+    block[19 * LANES + n] += scale * nz
+    block[24 * LANES + n] += c * stiff
     s = scale * r
     e = scale * (stiff * p + r * kinetic)
-    block[1, n] += s * nx
-    block[2, n] += s * ny
-    block[3, n] += s * nz
-    block[6, n] += s * u * nx + m
-    block[7, n] += s * u * ny
-    block[8, n] += s * u * nz
-    block[11, n] += s * v * nx
-    block[12, n] += s * v * ny + m
-    block[13, n] += s * v * nz
-    block[16, n] += s * w * nx
-    block[17, n] += s * w * ny
-    block[18, n] += s * w * nz + m
-    block[21, n] += e * nx + m * u
-    block[22, n] += e * ny + m * v
-    block[23, n] += e * nz + m * w
+    block[1 * LANES + n] += s * nx
+    block[2 * LANES + n] += s * ny
+    block[3 * LANES + n] += s * nz
+    block[6 * LANES + n] += s * u * nx + m
+    block[7 * LANES + n] += s * u * ny
+    block[8 * LANES + n] += s * u * nz
+    block[11 * LANES + n] += s * v * nx
+    block[12 * LANES + n] += s * v * ny + m
+    block[13 * LANES + n] += s * v * nz
+    block[16 * LANES + n] += s * w * nx
+    block[17 * LANES + n] += s * w * ny
+    block[18 * LANES + n] += s * w * nz + m
+    block[21 * LANES + n] += e * nx + m * u
+    block[22 * LANES + n] += e * ny + m * v
+    block[23 * LANES + n] += e * nz + m * w
 
 
 @inlined
 def add_mass(block, n, scale, r, u, v, w, gamma):
     """Add scale * dq/d(primitive) to `block`."""
     real = type(r)
-    block[0, n] += scale
-    block[5, n] += scale * u
-    block[10, n] += scale * v
-    block[15, n] += scale * w
-    block[20, n] += scale * real(0.5) * (u * u + v * v + w * w)
+    block[0 * LANES + n] += scale
+    block[5 * LANES + n] += scale * u
+    block[10 * LANES + n] += scale * v
+    block[15 * LANES + n] += scale * w
+    block[20 * LANES + n] += scale * real(0.5) * (u * u + v * v + w * w)
     s = scale * r
-    block[6, n] += s
-    block[12, n] += s
-    block[18, n] += s
-    block[21, n] += s * u
-    block[22, n] += s * v
-    block[23, n] += s * w
-    block[24, n] += scale / (gamma - real(1))
+    block[6 * LANES + n] += s
+    block[12 * LANES + n] += s
+    block[18 * LANES + n] += s
+    block[21 * LANES + n] += s * u
+    block[22 * LANES + n] += s * v
+    block[23 * LANES + n] += s * w
+    block[24 * LANES + n] += scale / (gamma - real(1))
 
 
-@inlined
-def invert(block, lanes):
-    """Invert the 5 x 5 blocks [25, lane] in place (Gauss-Jordan; the blocks are diagonally dominant enough for no
+@distinct
+def invert(block):
+    """Invert the 5 x 5 blocks [25 x lane] in place (Gauss-Jordan; the blocks are diagonally dominant enough for no
     pivoting)."""
+    one = type(block[0])(1)
     for k in range(5):
-        for n in range(lanes):
-            block[6 * k, n] = type(block[0, n])(1) / block[6 * k, n]
+        pivot = 6 * k * LANES
+        for n in range(LANES):
+            block[pivot + n] = one / block[pivot + n]
         for c in range(5):
             if c != k:
-                for n in range(lanes):
-                    block[5 * k + c, n] *= block[6 * k, n]
+                across = (5 * k + c) * LANES
+                for n in range(LANES):
+                    block[across + n] *= block[pivot + n]
         for r in range(5):
             if r != k:
+                down = (5 * r + k) * LANES
                 for c in range(5):
                     if c != k:
-                        for n in range(lanes):
-                            block[5 * r + c, n] -= block[5 * r + k, n] * block[5 * k + c, n]
-                for n in range(lanes):
-                    block[5 * r + k, n] *= -block[6 * k, n]
+                        here = (5 * r + c) * LANES
+                        across = (5 * k + c) * LANES
+                        for n in range(LANES):
+                            block[here + n] -= block[down + n] * block[across + n]
+                for n in range(LANES):
+                    block[down + n] *= -block[pivot + n]
 
 
-@kernel
-def diagonals(topology, state, sensor, free, cfl, gamma, stiffness, out):
-    """Fill `out` [cell, 25, lane] with the inverse diagonal blocks, pseudo-time term included.
+@distinct
+def add_face(block, radius, rows, i, there, j, theta, scale, nx, ny, nz, gamma):
+    """Add scale * Q of the face between cell i of `rows` and row j of `there` to `block`, its spectral radius to
+    `radius`; `theta` [lane] weight of HLLE."""
+    for n in range(LANES):
+        r, u, v, w, a, un = face_average(
+            rows[i, RHO + n],
+            rows[i, VX + n],
+            rows[i, VY + n],
+            rows[i, VZ + n],
+            rows[i, PRS + n],
+            there[j, RHO + n],
+            there[j, VX + n],
+            there[j, VY + n],
+            there[j, VZ + n],
+            there[j, PRS + n],
+            nx,
+            ny,
+            nz,
+            gamma,
+        )
+        d0, dp, dm = wave_dissipation(un, a, theta[n])
+        radius[n] += scale * (abs(un) + a)
+        add_dissipation(block, n, scale, r, u, v, w, a, un, d0, dp, dm, nx, ny, nz, gamma)
 
-    Args:
-        free: [far face, 5, lane] state outside the far field.
-        cfl: [lane] CFL number on the sum of spectral radii over the faces.
-    """
-    lanes = state.shape[2]
+
+@distinct
+def add_wall(block, radius, rows, i, area, nx, ny, nz, gamma, stiffness):
+    """Add a wall face of cell i to `block` and `radius`."""
+    half = type(gamma)(0.5)
+    scale = half * area
+    for n in range(LANES):
+        r = rows[i, RHO + n]
+        p = rows[i, PRS + n]
+        a = math.sqrt(gamma * p / r)
+        radius[n] += scale * a
+        # Half of A_n is what the closed sum over faces leaves out; the wall's own flux is pressure.
+        add_flux(block, n, -scale, r, rows[i, VX + n], rows[i, VY + n], rows[i, VZ + n], p, nx, ny, nz, gamma)
+        push = area * max(stiffness, half) * r * a
+        block[9 * LANES + n] += area * nx
+        block[14 * LANES + n] += area * ny
+        block[19 * LANES + n] += area * nz
+        block[6 * LANES + n] += push * nx * nx
+        block[7 * LANES + n] += push * nx * ny
+        block[8 * LANES + n] += push * nx * nz
+        block[11 * LANES + n] += push * ny * nx
+        block[12 * LANES + n] += push * ny * ny
+        block[13 * LANES + n] += push * ny * nz
+        block[16 * LANES + n] += push * nz * nx
+        block[17 * LANES + n] += push * nz * ny
+        block[18 * LANES + n] += push * nz * nz
+
+
+@distinct
+def diagonal_chunk(topology, first, last, rows, sensor, free, cfl, again, gamma, stiffness, out, block, radius, theta):
+    """The part of `diagonals` for cells `first` to `last`; scratch rows from `block` on."""
     start = topology.start
     other = topology.other
     normal = topology.normal
@@ -163,117 +216,157 @@ def diagonals(topology, state, sensor, free, cfl, gamma, stiffness, out):
     edge_normal = topology.boundary_normal
     edge_area = topology.boundary_area
     walls = topology.walls
-    chunk_cells = topology.chunk_cells
-    for chunk in prange(chunk_cells.shape[0] - 1):
-        block = np.empty((25, WIDTH), state.dtype)
-        radius = np.empty(WIDTH, state.dtype)
-        for i in range(chunk_cells[chunk], chunk_cells[chunk + 1]):
-            real = type(gamma)
-            half = real(0.5)
-            block[:] = real(0)
-            radius[:] = real(0)
-            for e in range(start[i], start[i + 1]):
-                j = other[e]
-                nx = normal[e, 0]
-                ny = normal[e, 1]
-                nz = normal[e, 2]
-                scale = half * areas[e]
-                for n in range(lanes):
-                    r, u, v, w, a, un = face_average(
-                        state[i, 0, n],
-                        state[i, 1, n],
-                        state[i, 2, n],
-                        state[i, 3, n],
-                        state[i, 4, n],
-                        state[j, 0, n],
-                        state[j, 1, n],
-                        state[j, 2, n],
-                        state[j, 3, n],
-                        state[j, 4, n],
-                        nx,
-                        ny,
-                        nz,
-                        gamma,
-                    )
-                    theta = max(sensor[i, n], sensor[j, n])
-                    d0, dp, dm = wave_dissipation(un, a, theta)
-                    radius[n] += scale * (abs(un) + a)
-                    add_dissipation(block, n, scale, r, u, v, w, a, un, d0, dp, dm, nx, ny, nz, gamma)
-            for m in range(edge_start[i], edge_start[i + 1]):
-                row = edge_row[m]
-                nx = edge_normal[row, 0]
-                ny = edge_normal[row, 1]
-                nz = edge_normal[row, 2]
-                area = edge_area[row]
-                scale = half * area
-                if row < walls:
-                    for n in range(lanes):
-                        r = state[i, 0, n]
-                        u = state[i, 1, n]
-                        v = state[i, 2, n]
-                        w = state[i, 3, n]
-                        p = state[i, 4, n]
-                        a = math.sqrt(gamma * p / r)
-                        radius[n] += scale * a
-                        # Half of A_n is what the closed sum over faces leaves out; the wall's own flux is pressure.
-                        add_flux(block, n, -scale, r, u, v, w, p, nx, ny, nz, gamma)
-                        push = area * max(stiffness, half) * r * a
-                        block[9, n] += area * nx
-                        block[14, n] += area * ny
-                        block[19, n] += area * nz
-                        block[6, n] += push * nx * nx
-                        block[7, n] += push * nx * ny
-                        block[8, n] += push * nx * nz
-                        block[11, n] += push * ny * nx
-                        block[12, n] += push * ny * ny
-                        block[13, n] += push * ny * nz
-                        block[16, n] += push * nz * nx
-                        block[17, n] += push * nz * ny
-                        block[18, n] += push * nz * nz
-                else:
-                    far = row - walls
-                    for n in range(lanes):
-                        r, u, v, w, a, un = face_average(
-                            state[i, 0, n],
-                            state[i, 1, n],
-                            state[i, 2, n],
-                            state[i, 3, n],
-                            state[i, 4, n],
-                            free[far, 0, n],
-                            free[far, 1, n],
-                            free[far, 2, n],
-                            free[far, 3, n],
-                            free[far, 4, n],
-                            nx,
-                            ny,
-                            nz,
-                            gamma,
-                        )
-                        d0, dp, dm = wave_dissipation(un, a, real(0))
-                        radius[n] += scale * (abs(un) + a)
-                        add_dissipation(block, n, scale, r, u, v, w, a, un, d0, dp, dm, nx, ny, nz, gamma)
-            for n in range(lanes):
-                add_mass(
-                    block, n, radius[n] / cfl[n], state[i, 0, n], state[i, 1, n], state[i, 2, n], state[i, 3, n], gamma
-                )
-            invert(block, lanes)
-            for k in range(25):
-                for n in range(lanes):
-                    out[i, k, n] = block[k, n]
+    half = type(gamma)(0.5)
+    zero = type(gamma)(0)
+    for i in range(first, last):
+        block[:] = zero
+        radius[:] = zero
+        for e in range(start[i], start[i + 1]):
+            j = other[e]
+            for n in range(LANES):
+                theta[n] = max(sensor[i, n], sensor[j, n])
+            nx = normal[e, 0]
+            ny = normal[e, 1]
+            nz = normal[e, 2]
+            add_face(block, radius, rows, i, rows, j, theta, half * areas[e], nx, ny, nz, gamma)
+        for m in range(edge_start[i], edge_start[i + 1]):
+            row = edge_row[m]
+            nx = edge_normal[row, 0]
+            ny = edge_normal[row, 1]
+            nz = edge_normal[row, 2]
+            area = edge_area[row]
+            if row < walls:
+                add_wall(block, radius, rows, i, area, nx, ny, nz, gamma, stiffness)
+            else:
+                theta[:] = zero
+                add_face(block, radius, rows, i, free, row - walls, theta, half * area, nx, ny, nz, gamma)
+        for n in range(LANES):
+            u = rows[i, VX + n]
+            v = rows[i, VY + n]
+            w = rows[i, VZ + n]
+            add_mass(block, n, radius[n] / cfl[n], rows[i, RHO + n], u, v, w, gamma)
+        invert(block)
+        for k in range(0, 25 * LANES, LANES):
+            for n in range(LANES):
+                out[i, k + n] = block[k + n] if again[n] > zero else out[i, k + n]
 
 
 @kernel
-def sweep(topology, state, sensor, residual, inverse, change, gamma, forward):
-    """One Gauss-Seidel pass over all cells, colour by colour: change_i = D^-1 (-residual_i - sum of off-diagonal
-    products).
+def diagonals(topology, state, sensor, free, cfl, again, gamma, stiffness, out):
+    """Fill `out` [cell, 25 x lane] with the inverse diagonal blocks, pseudo-time term included.
 
-    Blocks of one colour do not touch, so that the result does not depend on the number of threads.
+    Args:
+        free: [far face, 5, lane] state outside the far field.
+        cfl: [lane] CFL number on the sum of spectral radii over the faces.
+        again: [lane] 0 where the blocks stay as they are.
     """
-    lanes = state.shape[2]
+    rows = state.reshape(state.shape[0], ROW)
+    outside = free.reshape(free.shape[0], ROW)
+    chunk_cells = topology.chunk_cells
+    for chunk in prange(chunk_cells.shape[0] - 1):
+        first = chunk_cells[chunk]
+        last = chunk_cells[chunk + 1]
+        block = np.empty(25 * LANES, state.dtype)
+        radius = np.empty(LANES, state.dtype)
+        theta = np.empty(LANES, state.dtype)
+        diagonal_chunk(
+            topology, first, last, rows, sensor, outside, cfl, again, gamma, stiffness, out, block, radius, theta
+        )
+
+
+@distinct
+def add_products(sums, rows, sensor, change, i, j, scale, nx, ny, nz, gamma):
+    """Add to `sums` the off-diagonal block of cell i for its neighbour j times the neighbour's change."""
+    for n in range(LANES):
+        rj = rows[j, RHO + n]
+        uj = rows[j, VX + n]
+        vj = rows[j, VY + n]
+        wj = rows[j, VZ + n]
+        pj = rows[j, PRS + n]
+        d_r = change[j, RHO + n]
+        d_u = change[j, VX + n]
+        d_v = change[j, VY + n]
+        d_w = change[j, VZ + n]
+        d_p = change[j, PRS + n]
+        r, u, v, w, a, un = face_average(
+            rows[i, RHO + n],
+            rows[i, VX + n],
+            rows[i, VY + n],
+            rows[i, VZ + n],
+            rows[i, PRS + n],
+            rj,
+            uj,
+            vj,
+            wj,
+            pj,
+            nx,
+            ny,
+            nz,
+            gamma,
+        )
+        d0, dp, dm = wave_dissipation(un, a, max(sensor[i, n], sensor[j, n]))
+        f0, f1, f2, f3, f4 = flux_increment(rj, uj, vj, wj, pj, d_r, d_u, d_v, d_w, d_p, nx, ny, nz, gamma)
+        g0, g1, g2, g3, g4 = dissipation_increment(
+            r, u, v, w, a, d0, dp, dm, d_r, d_u, d_v, d_w, d_p, nx, ny, nz, gamma
+        )
+        sums[RHO + n] += scale * (f0 - g0)
+        sums[VX + n] += scale * (f1 - g1)
+        sums[VY + n] += scale * (f2 - g2)
+        sums[VZ + n] += scale * (f3 - g3)
+        sums[PRS + n] += scale * (f4 - g4)
+
+
+@distinct
+def sweep_block(topology, first, count, rows, sensor, residual, inverse, change, passed, gamma, forward, sums, rhs):
+    """The part of `sweep` for `count` cells from `first` on, upwards or downwards; `sums`, `rhs` scratch rows."""
     start = topology.start
+    split = topology.split
     other = topology.other
     normal = topology.normal
     areas = topology.area
+    half = type(gamma)(0.5)
+    for m in range(count):
+        i = first + m if forward else first + count - 1 - m
+        for k in range(ROW):
+            sums[k] = type(gamma)(0)
+        low = start[i] if forward else split[i]
+        high = split[i] if forward else start[i + 1]
+        for e in range(low, high):
+            j = other[e]
+            nx = normal[e, 0]
+            ny = normal[e, 1]
+            nz = normal[e, 2]
+            add_products(sums, rows, sensor, change, i, j, half * areas[e], nx, ny, nz, gamma)
+        for k in range(ROW):
+            rhs[k] = -residual[i, k] - passed[i, k] - sums[k]
+            passed[i, k] = sums[k]
+        for k in range(5):
+            for n in range(LANES):
+                change[i, k * LANES + n] = (
+                    inverse[i, (5 * k + 0) * LANES + n] * rhs[RHO + n]
+                    + inverse[i, (5 * k + 1) * LANES + n] * rhs[VX + n]
+                    + inverse[i, (5 * k + 2) * LANES + n] * rhs[VY + n]
+                    + inverse[i, (5 * k + 3) * LANES + n] * rhs[VZ + n]
+                    + inverse[i, (5 * k + 4) * LANES + n] * rhs[PRS + n]
+                )
+
+
+@kernel
+def sweep(topology, state, sensor, residual, inverse, change, passed, gamma, forward):
+    """One Gauss-Seidel pass over all cells, colour by colour: change_i = D^-1 (-residual_i - sum of off-diagonal
+    products).
+
+    A pass forms only the products with cells already visited in it. Those with the others are the ones that the pass
+    before, in the other direction, formed with the same changes: it left them in `passed` [cell, 5, lane], zero before
+    the first forward pass, so that two passes cost one
+    (P. Knabner, L. Angermann, Numerical Methods for Elliptic and Parabolic Partial Differential Equations, 5.1).
+    Blocks of one colour do not touch, so that the result does not depend on the number of threads.
+    """
+    cells = state.shape[0]
+    rows = state.reshape(cells, ROW)
+    outflow = residual.reshape(cells, ROW)
+    changes = change.reshape(cells, ROW)
+    others = passed.reshape(cells, ROW)
     block_cells = topology.block_cells
     color_start = topology.color_start
     color_blocks = topology.color_blocks
@@ -285,81 +378,22 @@ def sweep(topology, state, sensor, residual, inverse, change, gamma, forward):
             block = color_blocks[begin + b]
             first = block_cells[block]
             count = block_cells[block + 1] - first
-            rhs = np.empty((5, WIDTH), state.dtype)
-            for m in range(count):
-                i = first + m if forward else first + count - 1 - m
-                real = type(gamma)
-                half = real(0.5)
-                for k in range(5):
-                    for n in range(lanes):
-                        rhs[k, n] = -residual[i, k, n]
-                for e in range(start[i], start[i + 1]):
-                    j = other[e]
-                    nx = normal[e, 0]
-                    ny = normal[e, 1]
-                    nz = normal[e, 2]
-                    scale = half * areas[e]
-                    for n in range(lanes):
-                        rj = state[j, 0, n]
-                        uj = state[j, 1, n]
-                        vj = state[j, 2, n]
-                        wj = state[j, 3, n]
-                        pj = state[j, 4, n]
-                        d_r = change[j, 0, n]
-                        d_u = change[j, 1, n]
-                        d_v = change[j, 2, n]
-                        d_w = change[j, 3, n]
-                        d_p = change[j, 4, n]
-                        r, u, v, w, a, un = face_average(
-                            state[i, 0, n],
-                            state[i, 1, n],
-                            state[i, 2, n],
-                            state[i, 3, n],
-                            state[i, 4, n],
-                            rj,
-                            uj,
-                            vj,
-                            wj,
-                            pj,
-                            nx,
-                            ny,
-                            nz,
-                            gamma,
-                        )
-                        theta = max(sensor[i, n], sensor[j, n])
-                        d0, dp, dm = wave_dissipation(un, a, theta)
-                        f0, f1, f2, f3, f4 = flux_increment(
-                            rj, uj, vj, wj, pj, d_r, d_u, d_v, d_w, d_p, nx, ny, nz, gamma
-                        )
-                        g0, g1, g2, g3, g4 = dissipation_increment(
-                            r, u, v, w, a, d0, dp, dm, d_r, d_u, d_v, d_w, d_p, nx, ny, nz, gamma
-                        )
-                        rhs[0, n] -= scale * (f0 - g0)
-                        rhs[1, n] -= scale * (f1 - g1)
-                        rhs[2, n] -= scale * (f2 - g2)
-                        rhs[3, n] -= scale * (f3 - g3)
-                        rhs[4, n] -= scale * (f4 - g4)
-                for k in range(5):
-                    for n in range(lanes):
-                        change[i, k, n] = (
-                            inverse[i, 5 * k, n] * rhs[0, n]
-                            + inverse[i, 5 * k + 1, n] * rhs[1, n]
-                            + inverse[i, 5 * k + 2, n] * rhs[2, n]
-                            + inverse[i, 5 * k + 3, n] * rhs[3, n]
-                            + inverse[i, 5 * k + 4, n] * rhs[4, n]
-                        )
+            sums = np.empty(ROW, state.dtype)
+            rhs = np.empty(ROW, state.dtype)
+            sweep_block(
+                topology, first, count, rows, sensor, outflow, inverse, changes, others, gamma, forward, sums, rhs
+            )
 
 
 @kernel
 def squared_norms(topology, residual, out):
     """Fill `out` [chunk, lane] (fp64) with the sum of (net mass outflow)^2/volume over the chunk's cells."""
-    lanes = residual.shape[2]
     chunk_cells = topology.chunk_cells
     for chunk in prange(chunk_cells.shape[0] - 1):
-        total = np.zeros(lanes, np.float64)
+        total = np.zeros(LANES, np.float64)
         for i in range(chunk_cells[chunk], chunk_cells[chunk + 1]):
             scale = 1.0 / topology.volume[i]
-            for n in range(lanes):
+            for n in range(LANES):
                 value = np.float64(residual[i, 0, n])
                 total[n] += value * value * scale
         out[chunk] = total

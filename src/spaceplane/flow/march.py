@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from itertools import count
 
 import numpy as np
 
-from spaceplane.flow.ensemble import Ensemble, padded
+from spaceplane.flow.compiled import LANES
+from spaceplane.flow.ensemble import Ensemble
 from spaceplane.flow.settings import FlowSettings
 
 ACCELERATED_BELOW_MACH, ACCELERATED_AFTER_DROP = 2.0, 2.0
@@ -18,6 +21,10 @@ HOLD_SENSOR_AFTER = 20
 
 REJECTED_RISE = 2.5
 """A step after which the residual is this many times the last one is taken back."""
+
+FORMED_AGAIN_EVERY, FORMED_AGAIN_DROP = 3, 1.0
+"""The diagonal blocks of a lane are formed in every iteration, but in every third once its residual has fallen by this
+many decades and is near its best: the flow changes little by then. Lane by lane, so that companions change nothing."""
 
 
 @dataclass
@@ -31,6 +38,8 @@ class History:
 
     def drop(self) -> float:
         """Decades that the residual has fallen since the first iteration."""
+        if not self.residual:
+            return 0.0
         first, last = self.residual[0], self.residual[-1]
         return float(np.log10(max(first, 1e-300) / max(last, 1e-300)))
 
@@ -69,38 +78,40 @@ class Steering:
 
     Attributes:
         cfl, ceiling: [lane] CFL number and the largest it may reach.
-        before, best: [lane] last and smallest residual; None before the first.
+        before, best: [lane] last and smallest residual; infinite before the first.
         limited: [lane] share of cells held back in the last step.
         trusted: [lane] whether Anderson acceleration may be used.
     """
 
     def __init__(self, mach: np.ndarray, caution: Caution, impulsive: bool):
-        self.caution = caution
-        self.cfl = starting_cfl(mach, caution, impulsive)
-        self.ceiling = highest_cfl(mach, caution)
-        self.limited = np.zeros(len(mach))
-        self.trusted = mach < ACCELERATED_BELOW_MACH
-        self.before: np.ndarray | None = None
-        self.best: np.ndarray | None = None
+        self.caution, self.impulsive = caution, impulsive
+        self.cfl, self.ceiling, self.limited, self.before, self.best = np.zeros((5, len(mach)))
+        self.trusted = np.zeros(len(mach), dtype=bool)
+        self.begin(np.arange(len(mach)), mach)
+
+    def begin(self, lanes: np.ndarray, mach: np.ndarray) -> None:
+        """Start anew in the lanes of these indices, which now hold flows at `mach`."""
+        self.cfl[lanes] = starting_cfl(mach, self.caution, self.impulsive)
+        self.ceiling[lanes] = highest_cfl(mach, self.caution)
+        self.limited[lanes] = 0.0
+        self.before[lanes] = self.best[lanes] = np.inf
+        self.trusted[lanes] = mach < ACCELERATED_BELOW_MACH
 
     def rejected(self, norms: np.ndarray) -> np.ndarray:
         """[lane] whether the last step made things so much worse that it is taken back; its CFL number falls."""
-        if self.before is None:
-            return np.zeros(len(norms), dtype=bool)
-        bad = ~(norms < REJECTED_RISE * self.before) & (self.cfl > 1.0)
+        bad = np.isfinite(self.before) & ~(norms < REJECTED_RISE * self.before) & (self.cfl > 1.0)
         self.cfl = np.where(bad, np.maximum(0.3 * self.cfl, 1.0), self.cfl)
         return bad
 
     def advance(self, norms: np.ndarray, drop: np.ndarray) -> np.ndarray:
         """Take in the residuals and their drop in decades; [lane] whether the next step may be accelerated."""
-        calm = np.ones(len(norms), dtype=bool)
-        if self.before is not None:
-            self.cfl = np.minimum(self.feedback(norms), self.ceiling)
-            # Once the residual has risen well above its best, the condition goes on without acceleration.
-            self.trusted &= norms < 2.0 * self.best
-            self.trusted |= (drop > ACCELERATED_AFTER_DROP) & (norms < 1.2 * self.best)
-            calm = self.trusted & (norms < 1.5 * self.before)
-        self.best = norms if self.best is None else np.minimum(self.best, norms)
+        first = np.isinf(self.before)
+        self.cfl = np.where(first, self.cfl, np.minimum(self.feedback(norms), self.ceiling))
+        # Once the residual has risen well above its best, the condition goes on without acceleration.
+        self.trusted &= norms < 2.0 * self.best
+        self.trusted |= (drop > ACCELERATED_AFTER_DROP) & (norms < 1.2 * self.best)
+        calm = self.trusted & (norms < 1.5 * self.before)
+        self.best = np.minimum(self.best, norms)
         self.before = norms
         return calm
 
@@ -116,11 +127,6 @@ class Steering:
         factor = np.where(now > 4.0 * self.best, 0.8, factor)
         factor = np.where((grown > 2.0) | (self.limited > 0.1), 0.5, factor)
         return np.maximum(self.cfl * factor, min(0.5, self.caution.cfl_start))
-
-    def keep(self, source: np.ndarray) -> None:
-        """Keep the lanes `source` [new lane] only."""
-        for name in ("cfl", "ceiling", "limited", "trusted", "before", "best"):
-            setattr(self, name, getattr(self, name)[source])
 
 
 def converged(history: History, settings: FlowSettings) -> bool:
@@ -159,56 +165,81 @@ def march(
     caution: Caution,
     stop: Callable[[History], bool],
     finish: Callable[[int, Ensemble, int, History], None],
-    tick: Callable[[int, int, float], None],
+    tick: Callable[[int, dict[int, History], int], None],
+    start: np.ndarray | None = None,
     impulsive: bool = False,
 ) -> dict[int, History]:
-    """Iterate until every condition has stopped, failed or used up `iterations`.
+    """Iterate until every condition of the ensemble has stopped, failed or used up `iterations`.
+
+    Conditions beyond the lanes wait; each takes the first lane that becomes free.
 
     Args:
         stop: whether a condition with this history is done.
         finish: called once for each condition with (condition, ensemble, lane, history) when it leaves.
-        tick: called each iteration with (iteration, active conditions, worst drop in decades).
-        impulsive: whether the state is still the free stream.
+        tick: called each iteration with (iteration, histories, active conditions).
+        start: [cell, 5, condition] where those that wait start from; None for the free stream.
+        impulsive: whether that, and the state now, is still the free stream.
 
     Returns:
         History by condition.
     """
-    histories = {int(c): History() for c in ensemble.lanes[: ensemble.count]}
-    steering = Steering(ensemble.conditions.mach[ensemble.lanes], caution, impulsive)
-    active = np.arange(len(ensemble.lanes)) < ensemble.count
-    for iteration in range(iterations + 1):
+    mach = ensemble.conditions.mach
+    histories = {condition: History() for condition in range(len(mach))}
+    steering = Steering(mach[ensemble.lanes], caution, impulsive)
+    waiting = deque(range(ensemble.count, len(mach)))
+    active = np.arange(LANES) < ensemble.count
+    for iteration in count():
         norms = ensemble.evaluate()
-        rejected = steering.rejected(norms) & active
-        if rejected.any():
-            ensemble.undo(rejected)
+        undone = steering.rejected(norms) & active
+        if undone.any():
+            ensemble.undo(undone)
             norms = ensemble.evaluate()
-        forces = ensemble.forces()
-        for lane in np.flatnonzero(active):
-            condition = int(ensemble.lanes[lane])
-            history = histories[condition]
-            history.residual.append(float(norms[lane]))
-            history.force.append(forces[lane])
-            if not (np.isfinite(norms[lane]) and np.isfinite(forces[lane]).all()):
-                history.failure = f"not a number after {iteration} iterations"
-            history.done = not history.failure and stop(history)
-            if history.failure or history.done or iteration == iterations:
-                finish(condition, ensemble, lane, history)
-                active[lane] = False
-        staying = np.flatnonzero(active)
-        drop = np.array([histories[int(c)].drop() for c in ensemble.lanes])
-        tick(iteration, len(staying), float(drop.min()))
-        if not len(staying):
+        active &= ~leave(ensemble, active, norms, histories, iterations, stop, finish)
+        seated = np.flatnonzero(~active)[: len(waiting)]
+        if len(seated):
+            for lane in seated:
+                condition = waiting.popleft()
+                ensemble.seat(lane, condition, None if start is None else start[:, :, condition])
+            steering.begin(seated, mach[ensemble.lanes[seated]])
+            norms = ensemble.evaluate()
+            new = np.isin(np.arange(LANES), seated)
+            active |= new
+            active &= ~leave(ensemble, new, norms, histories, iterations, stop, finish)
+        tick(iteration, histories, int(active.sum()))
+        if not active.any() and not waiting:
             break
+        here = [histories[int(condition)] for condition in ensemble.lanes]
+        drop = np.array([history.drop() for history in here])
         calm = steering.advance(norms, drop)
-        ensemble.hold[:] = (iteration >= HOLD_SENSOR_AFTER) & (norms < 2.0 * steering.best)
-        # Copying all arrays is dear: lanes that are done run on unread until a whole vector of them can go.
-        if padded(len(staying)) < len(ensemble.lanes):
-            ensemble.keep(staying)
-            source = np.concatenate([staying, np.full(len(ensemble.lanes) - len(staying), staying[-1])])
-            active = np.arange(len(ensemble.lanes)) < ensemble.count
-            calm = calm[source]
-            steering.keep(source)
-            ensemble.evaluate()
-        ensemble.correct(steering.cfl)
+        age = np.array([len(history.residual) - 1 for history in here])
+        ensemble.hold[:] = (age >= HOLD_SENSOR_AFTER) & (norms < 2.0 * steering.best)
+        quiet = (drop > FORMED_AGAIN_DROP) & (norms < 2.0 * steering.best) & ~undone
+        ensemble.correct(steering.cfl, again=~quiet | (age % FORMED_AGAIN_EVERY == 0))
         steering.limited = ensemble.apply(caution.largest, calm)
     return histories
+
+
+def leave(
+    ensemble: Ensemble,
+    which: np.ndarray,
+    norms: np.ndarray,
+    histories: dict[int, History],
+    iterations: int,
+    stop: Callable[[History], bool],
+    finish: Callable[[int, Ensemble, int, History], None],
+) -> np.ndarray:
+    """Record residual and force of the lanes `which` [lane]; those of them that are at their end, told to `finish`."""
+    forces = ensemble.forces()
+    gone = np.zeros(LANES, dtype=bool)
+    for lane in np.flatnonzero(which):
+        condition = int(ensemble.lanes[lane])
+        history = histories[condition]
+        history.residual.append(float(norms[lane]))
+        history.force.append(forces[lane])
+        if not (np.isfinite(norms[lane]) and np.isfinite(forces[lane]).all()):
+            history.failure = f"not a number after {len(history.residual) - 1} iterations"
+        history.done = not history.failure and stop(history)
+        if history.failure or history.done or len(history.residual) > iterations:
+            finish(condition, ensemble, lane, history)
+            gone[lane] = True
+    return gone

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from numba import prange
 
-from spaceplane.flow.compiled import kernel
+from spaceplane.flow.compiled import LANES, kernel
 from spaceplane.flow.residual import guarded
 
 
@@ -14,7 +14,7 @@ def prolong(parent, offset, state, gradient, order, lane, out, column):
 
     Args:
         parent: [fine cell] coarse cell in the kernels' numbering; offset: [fine cell, xyz] from its centroid.
-        state: [coarse cell, 5, lane]; gradient: [coarse cell, 15, lane], limited; used when `order` is 2.
+        state: [coarse cell, 5, lane]; gradient: [coarse cell, axis, 5 x lane], limited; used when `order` is 2.
     """
     for i in prange(parent.shape[0]):
         j = parent[i]
@@ -23,6 +23,6 @@ def prolong(parent, offset, state, gradient, order, lane, out, column):
             if order == 2:
                 step = value - value
                 for a in range(3):
-                    step += gradient[j, 3 * k + a, lane] * offset[i, a]
+                    step += gradient[j, a, k * LANES + lane] * offset[i, a]
                 value = guarded(value, step) if k == 0 or k == 4 else value + step
             out[i, k, column] = value

@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numba import prange
 
-from spaceplane.flow.compiled import WIDTH, inlined, kernel
+from spaceplane.flow.compiled import LANES, PRS, RHO, ROW, VX, VY, VZ, distinct, inlined, kernel
 from spaceplane.flow.deadwater import dead_water
 from spaceplane.flow.limiters import barth_jespersen, venkatakrishnan
 
@@ -36,11 +36,119 @@ def shock_weight(ratio, compression, low, high):
     return min(max(weight, low), high)
 
 
+@distinct
+def gather(rows, i, j, cx, cy, cz, gx, gy, gz, high, low):
+    """Add neighbour j's part to the gradient of cell i and to the extremes of its neighbourhood."""
+    for m in range(ROW):
+        value = rows[j, m]
+        d = value - rows[i, m]
+        gx[m] += cx * d
+        gy[m] += cy * d
+        gz[m] += cz * d
+        high[m] = max(high[m], value)
+        low[m] = min(low[m], value)
+
+
+@distinct
+def restrict(limiter, gx, gy, gz, dx, dy, dz, middle, reach, eps2, phi):
+    """Lower `phi` to what the limiter allows at the face (dx, dy, dz) away; room there is `middle` +- `reach`."""
+    for m in range(ROW):
+        step = gx[m] * dx + gy[m] * dy + gz[m] * dz
+        # A choice between two arrays would be a gather: choose a sign instead.
+        half = reach[m]
+        room = middle[m] + (half if step > type(step)(0) else -half)
+        phi[m] = min(phi[m], limit(limiter, room, abs(step), eps2[m]))
+
+
+@distinct
+def gradient_chunk(
+    topology,
+    first,
+    last,
+    rows,
+    gradient,
+    sensor,
+    limiter,
+    theta_low,
+    theta_high,
+    smallness,
+    gamma,
+    per_pressure,
+    calming,
+    hold,
+    high,
+    low,
+    phi,
+    eps2,
+    gx,
+    gy,
+    gz,
+    keep,
+):
+    """The part of `gradients` for cells `first` to `last`; scratch rows from `high` on."""
+    start = topology.start
+    reach = topology.reach
+    stencil_start = topology.stencil_start
+    stencil_other = topology.stencil_other
+    weight = topology.stencil_weight
+    real = type(gamma)
+    zero = real(0)
+    one = real(1)
+    p0 = one / gamma
+    for i in range(first, last):
+        for m in range(ROW):
+            gx[m] = zero
+            gy[m] = zero
+            gz[m] = zero
+            high[m] = rows[i, m]
+            low[m] = rows[i, m]
+            phi[m] = one
+        for e in range(stencil_start[i], stencil_start[i + 1]):
+            j = stencil_other[e]
+            gather(rows, i, j, weight[e, 0], weight[e, 1], weight[e, 2], gx, gy, gz, high, low)
+        h = topology.size[i]
+        noise = min(smallness * h * h * h, real(1e-2)) + real(1e-12)
+        for n in range(LANES):
+            r = rows[i, RHO + n]
+            p = rows[i, PRS + n]
+            # The sound speed, not the flow's, is the scale of velocities: a tenth of Mach 10 would be no noise.
+            sound2 = noise * gamma * p / r
+            eps2[RHO + n] = noise * r * r
+            eps2[VX + n] = sound2
+            eps2[VY + n] = sound2
+            eps2[VZ + n] = sound2
+            eps2[PRS + n] = noise * (gamma * p) * (gamma * p)
+            ratio = max(high[PRS + n] / p, p / low[PRS + n])
+            squeeze = -(gx[VX + n] + gy[VY + n] + gz[VZ + n]) * h / math.sqrt(gamma * p / r)
+            theta = max(shock_weight(ratio, squeeze, theta_low, theta_high), hold[n] * sensor[i, n])
+            calm = dead_water(rows[i, VX + n], rows[i, VY + n], rows[i, VZ + n], p, p0, per_pressure[n], calming)
+            sensor[i, n] = theta
+            factor = (one - theta) * (one - calm)
+            keep[RHO + n] = factor
+            keep[VX + n] = factor
+            keep[VY + n] = factor
+            keep[VZ + n] = factor
+            keep[PRS + n] = factor
+        if limiter != 0:
+            for m in range(ROW):
+                up = high[m] - rows[i, m]
+                down = rows[i, m] - low[m]
+                high[m] = real(0.5) * (up + down)
+                low[m] = real(0.5) * (up - down)
+            for e in range(start[i], start[i + 1]):
+                restrict(limiter, gx, gy, gz, reach[e, 0], reach[e, 1], reach[e, 2], high, low, eps2, phi)
+        for m in range(ROW):
+            factor = phi[m] * keep[m]
+            gradient[i, 0, m] = factor * gx[m]
+            gradient[i, 1, m] = factor * gy[m]
+            gradient[i, 2, m] = factor * gz[m]
+
+
 @kernel
 def gradients(
     topology, state, gradient, sensor, limiter, theta_low, theta_high, smallness, gamma, per_pressure, calming, hold
 ):
-    """Fill `gradient` [cell, 15, lane] (variable-major: 3 variable + axis) and `sensor` [cell, lane].
+    """Fill `gradient` [cell, axis, 5 x lane] and `sensor` [cell, lane].
 
     Gradients come out limited, and scaled by (1 - sensor) in strong shocks and by (1 - dead_water) in wakes.
 
@@ -52,78 +160,40 @@ def gradients(
         per_pressure: [lane] 1/q_inf; calming: most that is taken out of slopes in dead water.
         hold: [lane] 1 where the sensor may only rise from here on, else 0.
     """
-    lanes = state.shape[2]
-    start = topology.start
-    reach = topology.reach
-    stencil_start = topology.stencil_start
-    stencil_other = topology.stencil_other
-    weight = topology.stencil_weight
+    rows = state.reshape(state.shape[0], ROW)
     chunk_cells = topology.chunk_cells
     for chunk in prange(chunk_cells.shape[0] - 1):
-        high = np.empty((5, WIDTH), state.dtype)
-        low = np.empty((5, WIDTH), state.dtype)
-        phi = np.empty((5, WIDTH), state.dtype)
-        eps2 = np.empty((5, WIDTH), state.dtype)
-        g = np.empty((15, WIDTH), state.dtype)
-        keep = np.empty(WIDTH, state.dtype)
-        for i in range(chunk_cells[chunk], chunk_cells[chunk + 1]):
-            real = type(topology.volume[i])
-            one = real(1)
-            p0 = one / gamma
-            g[:] = real(0)
-            for k in range(5):
-                for n in range(lanes):
-                    high[k, n] = state[i, k, n]
-                    low[k, n] = state[i, k, n]
-                    phi[k, n] = one
-            for e in range(stencil_start[i], stencil_start[i + 1]):
-                j = stencil_other[e]
-                cx = weight[e, 0]
-                cy = weight[e, 1]
-                cz = weight[e, 2]
-                for k in range(5):
-                    for n in range(lanes):
-                        value = state[j, k, n]
-                        d = value - state[i, k, n]
-                        g[3 * k, n] += cx * d
-                        g[3 * k + 1, n] += cy * d
-                        g[3 * k + 2, n] += cz * d
-                        high[k, n] = max(high[k, n], value)
-                        low[k, n] = min(low[k, n], value)
-            h = topology.size[i]
-            noise = min(smallness * h * h * h, real(1e-2)) + real(1e-12)
-            for n in range(lanes):
-                r = state[i, 0, n]
-                p = state[i, 4, n]
-                # The sound speed, not the flow's, is the scale of velocities: a tenth of Mach 10 would be no noise.
-                sound2 = noise * gamma * p / r
-                eps2[0, n] = noise * r * r
-                eps2[1, n] = sound2
-                eps2[2, n] = sound2
-                eps2[3, n] = sound2
-                eps2[4, n] = noise * (gamma * p) * (gamma * p)
-                ratio = max(high[4, n] / p, p / low[4, n])
-                squeeze = -(g[3, n] + g[7, n] + g[11, n]) * h / math.sqrt(gamma * p / r)
-                sensor[i, n] = max(shock_weight(ratio, squeeze, theta_low, theta_high), hold[n] * sensor[i, n])
-                calm = dead_water(state[i, 1, n], state[i, 2, n], state[i, 3, n], p, p0, per_pressure[n], calming)
-                keep[n] = (one - sensor[i, n]) * (one - calm)
-            if limiter != 0:
-                for k in range(5):
-                    for n in range(lanes):
-                        high[k, n] -= state[i, k, n]
-                        low[k, n] = state[i, k, n] - low[k, n]
-                for e in range(start[i], start[i + 1]):
-                    dx = reach[e, 0]
-                    dy = reach[e, 1]
-                    dz = reach[e, 2]
-                    for k in range(5):
-                        for n in range(lanes):
-                            step = g[3 * k, n] * dx + g[3 * k + 1, n] * dy + g[3 * k + 2, n] * dz
-                            room = high[k, n] if step > real(0) else low[k, n]
-                            phi[k, n] = min(phi[k, n], limit(limiter, room, abs(step), eps2[k, n]))
-            for k in range(5):
-                for n in range(lanes):
-                    factor = phi[k, n] * keep[n]
-                    gradient[i, 3 * k, n] = factor * g[3 * k, n]
-                    gradient[i, 3 * k + 1, n] = factor * g[3 * k + 1, n]
-                    gradient[i, 3 * k + 2, n] = factor * g[3 * k + 2, n]
+        first = chunk_cells[chunk]
+        last = chunk_cells[chunk + 1]
+        high = np.empty(ROW, state.dtype)
+        low = np.empty(ROW, state.dtype)
+        phi = np.empty(ROW, state.dtype)
+        eps2 = np.empty(ROW, state.dtype)
+        gx = np.empty(ROW, state.dtype)
+        gy = np.empty(ROW, state.dtype)
+        gz = np.empty(ROW, state.dtype)
+        keep = np.empty(ROW, state.dtype)
+        gradient_chunk(
+            topology,
+            first,
+            last,
+            rows,
+            gradient,
+            sensor,
+            limiter,
+            theta_low,
+            theta_high,
+            smallness,
+            gamma,
+            per_pressure,
+            calming,
+            hold,
+            high,
+            low,
+            phi,
+            eps2,
+            gx,
+            gy,
+            gz,
+            keep,
+        )

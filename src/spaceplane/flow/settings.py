@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import difflib
 import math
 from dataclasses import dataclass
 
 import numpy as np
 
-from spaceplane.errors import InputError
+from spaceplane.errors import InputError, unknown_name
 from spaceplane.flow.fluxes import FLUXES
 from spaceplane.flow.limiters import LIMITERS
 from spaceplane.flow.solution import FlowConditions
@@ -100,13 +99,10 @@ class FlowSettings:
         return PRECISIONS[self.precision]
 
 
-def choose(field: str, name: str, registry: dict) -> object:
-    """The registry's entry called `name`; an InputError with the nearest name when there is none."""
-    if name in registry:
-        return registry[name]
-    near = difflib.get_close_matches(str(name), list(registry), n=1)
-    hint = f"; did you mean {near[0]!r}?" if near else ""
-    raise InputError(f"{field}: {name!r} is not known; one of {', '.join(registry)}{hint}")
+def choose(field: str, name: str, registry: dict) -> None:
+    """Refuse a `name` that the registry does not have."""
+    if name not in registry:
+        raise InputError(unknown_name(field, name, registry))
 
 
 def check(conditions: FlowConditions) -> FlowConditions:

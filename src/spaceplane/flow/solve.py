@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
 from functools import partial
 
 import numpy as np
 
 from spaceplane.errors import InputError
 from spaceplane.flow.coarsen import Sequence, sequence
-from spaceplane.flow.compiled import WIDTH, is_compiled, mark_compiled
+from spaceplane.flow.compiled import CACHE
 from spaceplane.flow.ensemble import Ensemble, free_stream
 from spaceplane.flow.march import Caution, History, converged, finished, march
 from spaceplane.flow.prolong import prolong
@@ -18,8 +17,9 @@ from spaceplane.flow.settings import FlowSettings, check
 from spaceplane.flow.solution import ConvergenceRecord, FlowConditions, Solution
 from spaceplane.flow.topology import prepare
 from spaceplane.mesh.mesh import Mesh
+from spaceplane.progress import Progress, silent
 
-Progress = Callable[[str, int, int, str], None]
+LARGEST_BATCH = 64
 
 
 def solve(
@@ -46,13 +46,13 @@ def solve(
     """
     settings = settings or FlowSettings()
     conditions = check(conditions)
-    say = progress or (lambda phase, done, total, text: None)
+    say = progress or silent
     began = time.perf_counter()
     levels = mesh if isinstance(mesh, Sequence) else sequence(mesh, settings.coarse_levels)
     fine = levels.meshes[0]
     if not fine.cells:
         raise InputError("mesh: 0 cells; at least one is needed")
-    cold = not is_compiled(settings.precision)
+    cold = not CACHE.is_complete(settings.precision)
     if cold:
         say("compile", 0, 1, "compiling kernels (once, ~20 s)")
     topologies = [prepare(level, settings.dtype) for level in levels.meshes]
@@ -61,15 +61,16 @@ def solve(
 
     job = _Job(levels, topologies, conditions, settings, say)
     caution = Caution(settings.cfl_start, settings.cfl_max)
-    for which in np.array_split(np.arange(len(conditions)), -(-len(conditions) // WIDTH)):
+    # Slow flows wait with a lane of their own while others share one: they begin first.
+    for which in batches(np.argsort(conditions.mach, kind="stable")):
         job.run(which, caution, seconds)
     retry = np.array([c for c in range(len(conditions)) if job.worth_retry(c)], dtype=int)
     if len(retry):
         say("retry", 0, len(retry), f"{len(retry)} conditions once more, carefully")
-        for which in np.array_split(retry, -(-len(retry) // WIDTH)):
+        for which in batches(retry):
             job.run(which, Caution(min(5.0, settings.cfl_start), min(25.0, settings.cfl_max), 1.2, 0.25), seconds)
     if cold:
-        mark_compiled(settings.precision)
+        CACHE.mark_complete(settings.precision)
     records = tuple(judge(job.histories[c], settings) for c in range(len(conditions)))
     seconds["total"] = time.perf_counter() - began
     warnings = [f"condition {c}: {r.verdict}: {r.reason}" for c, r in enumerate(records) if not r.good]
@@ -134,15 +135,21 @@ class _Job:
                     else:
                         result[:, :, column] = start[parent, :, column]
                 else:
-                    prolong(parent, offset, ensemble.state, ensemble.slopes(), ensemble.order, lane, result, column)
-
-            def tick(iteration, active, worst, phase=phase, limit=limit):
-                self.say(phase, iteration, limit, f"{active} active, {worst:.1f} decades")
+                    prolong(parent, offset, ensemble.state, ensemble.gradient, ensemble.order, lane, result, column)
 
             stop = partial(finished, settings=settings) if last else partial(fallen, decades=1.5 if order == 1 else 2.0)
-            march(ensemble, limit, caution, stop, finish, tick, impulsive=start is None)
+            tick = partial(self._tell, phase, settings.residual_drop if last else 2.0)
+            march(ensemble, limit, caution, stop, finish, tick, start, impulsive=start is None)
             seconds[phase] = seconds.get(phase, 0.0) + time.perf_counter() - began
             start = result
+
+    def _tell(self, phase: str, aim: float, iteration: int, histories: dict[int, History], active: int) -> None:
+        """Report how far a level is, in per cent: conditions by their decades of `aim`, those through with it fully."""
+        begun = [h for h in histories.values() if h.residual]
+        drops = np.nan_to_num([h.drop() for h in begun])
+        share = np.where([h.done or bool(h.failure) for h in begun], 1.0, np.clip(drops / aim, 0.0, 1.0))
+        text = f"iteration {iteration}, {active} active, {drops.min():.1f} decades"
+        self.say(phase, round(100 * share.sum() / len(histories)), 100, text)
 
     def _way_down(self, level: int) -> tuple[np.ndarray, np.ndarray]:
         """For `prolong` from `level` to the next finer one: (parent, offset), rows in the finer level's kernel
@@ -167,6 +174,11 @@ class _Job:
             return
         self.state[ensemble.topology.order, :, condition] = ensemble.state[:, :, lane]
         self.wall_pressure[:, condition] = ensemble.wall_pressure()[:, lane]
+
+
+def batches(which: np.ndarray) -> list[np.ndarray]:
+    """Conditions in groups of which all solutions fit into memory together."""
+    return np.array_split(which, -(-len(which) // LARGEST_BATCH)) if len(which) else []
 
 
 def stages(levels: int, order: int) -> list[tuple[int, int]]:

@@ -10,7 +10,7 @@ import numpy as np
 from numba import prange
 from scipy.spatial import cKDTree
 
-from spaceplane.flow.compiled import kernel
+from spaceplane.flow.compiled import LANES, kernel
 
 
 def mirror_cells(center: np.ndarray, volume: np.ndarray) -> np.ndarray:
@@ -29,14 +29,13 @@ def mirror_cells(center: np.ndarray, volume: np.ndarray) -> np.ndarray:
 @kernel
 def symmetrise(mirror, change, share):
     """Replace `change` [cell, 5, lane] by (1 - share) itself + share its mirror image; share [lane] is 0.5 or 0."""
-    lanes = change.shape[2]
     for i in prange(change.shape[0]):
         j = mirror[i]
         if i <= j:
             for k in range(5):
                 real = type(share[0])
                 sign = real(-1) if k == 2 else real(1)
-                for n in range(lanes):
+                for n in range(LANES):
                     s = share[n]
                     a = change[i, k, n]
                     b = sign * change[j, k, n]

@@ -19,7 +19,8 @@ class Topology(NamedTuple):
     """Arrays of the kernels; real arrays in the working precision, indices int32.
 
     Cells are renumbered along a Morton curve: `order[new] = old`. Every cell has a list of entries, one per interior
-    face, `start[cell]:start[cell + 1]`: the neighbour `other`, unit normal `normal` out of the cell, area `area`.
+    face, `start[cell]:start[cell + 1]`: the neighbour `other`, unit normal `normal` out of the cell, area `area`;
+    those before `split[cell]` lead to cells that a forward sweep visits earlier.
     `stencil_*` is the list of the gradient's neighbours with the coefficients of the least-squares gradient.
     Faces of a chunk (a run of cells owned by one thread) are `chunk_faces[chunk_start[k]:chunk_start[k + 1]]`; a face
     between two
@@ -33,6 +34,7 @@ class Topology(NamedTuple):
     volume: np.ndarray
     size: np.ndarray
     start: np.ndarray
+    split: np.ndarray
     other: np.ndarray
     normal: np.ndarray
     area: np.ndarray
@@ -169,8 +171,14 @@ def prepare(mesh: Mesh, dtype: type) -> Topology:
     reach = np.concatenate([face_center - center[pair[:, 0]], face_center - center[pair[:, 1]]], axis=1)
 
     faces = len(pair)
-    start, rows = group(np.r_[pair[:, 0], pair[:, 1]], cells)
-    other = np.r_[pair[:, 1], pair[:, 0]][rows]
+    block_cells, color_start, blocks = color_blocks(cells, pair)
+    visited = np.empty(cells, dtype=np.int64)
+    visited[np.concatenate([np.arange(block_cells[b], block_cells[b + 1]) for b in blocks])] = np.arange(cells)
+    own, opposite = np.r_[pair[:, 0], pair[:, 1]], np.r_[pair[:, 1], pair[:, 0]]
+    later = visited[opposite] > visited[own]
+    start, rows = group(2 * own + later, 2 * cells)
+    start, split = start[::2], start[1::2]
+    other = opposite[rows]
     entry_normal = np.concatenate([normal, -normal])[rows]
     entry_area = np.r_[area, area][rows]
     entry_reach = np.concatenate([reach[:, :3], reach[:, 3:]])[rows]
@@ -188,7 +196,6 @@ def prepare(mesh: Mesh, dtype: type) -> Topology:
     edge_normal, edge_area = _unit(np.concatenate([mesh.wall_area, mesh.far_area]))
     edge_reach = np.concatenate([mesh.wall_center, mesh.far_center]) - center[edge_cell]
     edge_start, edge_row = group(edge_cell, cells)
-    block_cells, color_start, blocks = color_blocks(cells, pair)
 
     def real(x: np.ndarray) -> np.ndarray:
         return np.ascontiguousarray(x, dtype=dtype)
@@ -201,6 +208,7 @@ def prepare(mesh: Mesh, dtype: type) -> Topology:
         volume=real(mesh.cell_volume[order]),
         size=real(np.cbrt(mesh.cell_volume[order])),
         start=index(start),
+        split=index(split),
         other=index(other),
         normal=real(entry_normal),
         area=real(entry_area),
