@@ -40,7 +40,8 @@ def family():
 def test_a_condition_alone_equals_itself_in_an_ensemble(family):
     alone = solve(MESH, conditions([3.0], [10.0], [-5.0]), SMALL)
     assert alone.records[0].iterations == family.records[1].iterations
-    np.testing.assert_allclose(alone.wall_pressure[:, 0], family.wall_pressure[:, 1], rtol=2e-4)
+    # In the lee the pressure is 3 % of the free stream's 1/gamma, which is the measure there.
+    np.testing.assert_allclose(alone.wall_pressure[:, 0], family.wall_pressure[:, 1], rtol=2e-4, atol=2e-4 / 1.4)
     np.testing.assert_allclose(force(alone)[0], force(family)[1], rtol=1e-4, atol=1e-4)
 
 

@@ -16,7 +16,7 @@ from spaceplane.flow.jacobian import dissipation_increment, face_average, flux_i
 
 
 @inlined
-def add_dissipation(block, n, scale, r, u, v, w, a, un, d0, dp, dm, nx, ny, nz, gamma):
+def add_dissipation(block, n, scale, r, u, v, w, a, d0, dp, dm, nx, ny, nz, gamma):
     """Add scale * Q (see `jacobian.dissipation_increment`) to `block` [25 x lane], row-major 5 row + column."""
     real = type(r)
     one = real(1)
@@ -40,13 +40,13 @@ def add_dissipation(block, n, scale, r, u, v, w, a, un, d0, dp, dm, nx, ny, nz, 
     block[9 * LANES + n] += u * s + nx * t
     block[14 * LANES + n] += v * s + ny * t
     block[19 * LANES + n] += w * s + nz * t
-    block[24 * LANES + n] += enthalpy * mean * inverse - kinetic * d0 * inverse + un * t
+    block[24 * LANES + n] += enthalpy * s + d0 * gamma / (gamma - one)
     # Columns of velocity: sound waves along n, shear across it.
     s = skew * r / a
     t = mean * r
     z = d0 * r
     tz = t - z
-    eu = enthalpy * s + un * tz
+    es = enthalpy * s
     block[1 * LANES + n] += s * nx
     block[2 * LANES + n] += s * ny
     block[3 * LANES + n] += s * nz
@@ -62,9 +62,9 @@ def add_dissipation(block, n, scale, r, u, v, w, a, un, d0, dp, dm, nx, ny, nz, 
     block[16 * LANES + n] += sw * nx
     block[17 * LANES + n] += sw * ny
     block[18 * LANES + n] += sw * nz + z
-    block[21 * LANES + n] += eu * nx + z * u
-    block[22 * LANES + n] += eu * ny + z * v
-    block[23 * LANES + n] += eu * nz + z * w
+    block[21 * LANES + n] += es * nx + z * u
+    block[22 * LANES + n] += es * ny + z * v
+    block[23 * LANES + n] += es * nz + z * w
 
 
 @inlined
@@ -174,7 +174,7 @@ def add_face(block, radius, rows, i, there, j, theta, scale, nx, ny, nz, gamma):
         )
         d0, dp, dm = wave_dissipation(un, a, theta[n])
         radius[n] += scale * (abs(un) + a)
-        add_dissipation(block, n, scale, r, u, v, w, a, un, d0, dp, dm, nx, ny, nz, gamma)
+        add_dissipation(block, n, scale, r, u, v, w, a, d0, dp, dm, nx, ny, nz, gamma)
 
 
 @distinct

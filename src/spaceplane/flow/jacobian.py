@@ -4,7 +4,8 @@ The linearised flux through a face is half of (A_i dq_i + A_j dq_j) - Q (dq_j - 
 of the
 flux actually used: eigenvalues |un +- a| on sound waves and `d0` on entropy and shear waves (|un| for HLLC, the chord
 of
-HLLE between the sound waves for HLLE). Q must match the flux, else large CFL numbers diverge.
+HLLE between the sound waves for HLLE); both carry total enthalpy with the mass, so that its jump is dissipated by `d0`.
+Q must match the flux, else large CFL numbers diverge.
 Wave decomposition: P. L. Roe, J. Comput. Phys. 43 (1981) 357-372.
 """
 
@@ -50,7 +51,6 @@ def dissipation_increment(r, u, v, w, a, d0, dp_, dm_, dr, du, dv, dw, dp, nx, n
     real = type(r)
     one = real(1)
     half = real(0.5)
-    un = u * nx + v * ny + w * nz
     dun = du * nx + dv * ny + dw * nz
     inverse = one / (a * a)
     up = half * dp_ * (dp * inverse + r * dun / a)
@@ -59,14 +59,14 @@ def dissipation_increment(r, u, v, w, a, d0, dp_, dm_, dr, du, dv, dw, dp, nx, n
     t = (up - down) * a
     z = d0 * (dr - dp * inverse)
     shear = d0 * r
-    kinetic = half * (u * u + v * v + w * w)
-    enthalpy = a * a / (gamma - one) + kinetic
+    heat = a * a / (gamma - one)
+    enthalpy = heat + half * (u * u + v * v + w * w)
     return (
         s + z,
         u * (s + z) + nx * t + shear * (du - nx * dun),
         v * (s + z) + ny * t + shear * (dv - ny * dun),
         w * (s + z) + nz * t + shear * (dw - nz * dun),
-        enthalpy * s + un * t + kinetic * z + shear * (u * du + v * dv + w * dw - un * dun),
+        enthalpy * (s + z) + d0 * (gamma / (gamma - one) * dp - heat * dr) + shear * (u * du + v * dv + w * dw),
     )
 
 

@@ -17,6 +17,8 @@ from spaceplane.validation.records import Record
 
 CASE = "sphere"
 MACHS = (0.5, 1.5, 2.0, 3.0, 5.0, 10.0)
+WALL_LAYERS = 6
+"""Layers of the finest cells: enough to hold the bow shock from Mach 2 up."""
 RAYLEIGH = "Rayleigh's pitot formula (NACA 1135)"
 BILLIG = "Billig (1967)"
 LOTH = "Loth et al. (2021), Re 1e6"
@@ -39,7 +41,7 @@ def run(fine: bool, progress: Progress) -> list[Record]:
     progress(f"Mach {', '.join(f'{mach:g}' for mach in MACHS)}", 0.0)
     zero = np.zeros(len(MACHS))
     conditions = FlowConditions(np.array(MACHS), zero, zero)
-    solution = solve_body(bodies.sphere(), MeshSettings(wall_cell=cell), conditions, progress)
+    solution = solve_body(bodies.sphere(), MeshSettings(wall_cell=cell, wall_layers=WALL_LAYERS), conditions, progress)
     return sphere_records(solution)
 
 

@@ -1,7 +1,9 @@
 """HLLC flux: resolves contacts and shear; used away from strong shocks.
 
 E. F. Toro, M. Spruce, W. Speares, Shock Waves 4 (1994) 25-34; wave speed of the contact from P. Batten et al.,
-SIAM J. Sci. Comput. 18 (1997) 1553-1570, eq. 37.
+SIAM J. Sci. Comput. 18 (1997) 1553-1570, eq. 37. The energy flux is the mass flux times the upwind total enthalpy,
+as in M.-S. Liou, J. Comput. Phys. 129 (1996) 364-382: steady flow then keeps the free stream's everywhere, shocks
+included.
 """
 
 from __future__ import annotations
@@ -46,7 +48,7 @@ def hllc(rl, ul, vl, wl, pl, rr, ur, vr, wr, pr, nx, ny, nz, gamma, p0):
     push = star * (contact - un)
     mass = r * un + c * (star - r)
     gain = star - r
-    flux_energy = un * (energy + p) + c * (star * energy / r - energy + push * (contact + p / (r * (s - un))))
+    flux_energy = mass * (energy + p) / r
     q = p - p0
     return (
         mass,

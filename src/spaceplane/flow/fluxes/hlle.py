@@ -1,6 +1,8 @@
 """HLLE flux: smears contacts, has no carbuncle; used in strong shocks.
 
-A. Harten, P. D. Lax, B. van Leer, SIAM Rev. 25 (1983) 35-61, with the speeds of Einfeldt (1988).
+A. Harten, P. D. Lax, B. van Leer, SIAM Rev. 25 (1983) 35-61, with the speeds of Einfeldt (1988). The jump that is
+dissipated in the energy equation is that of rho H, not of rho E (A. Jameson, Int. J. Comput. Fluid Dyn. 4 (1995)
+171-218): total enthalpy travels with the mass, and steady flow keeps the free stream's everywhere.
 """
 
 from __future__ import annotations
@@ -31,13 +33,14 @@ def hlle(rl, ul, vl, wl, pl, rr, ur, vr, wr, pr, nx, ny, nz, gamma, p0):
     d = slow * fast * scale
     ml = rl * (a * unl - d)
     mr = rr * (b * unr + d)
-    el = pl / (gamma - one) + half * rl * (ul * ul + vl * vl + wl * wl)
-    er = pr / (gamma - one) + half * rr * (ur * ur + vr * vr + wr * wr)
+    stiff = gamma / (gamma - one)
+    hl = stiff * pl / rl + half * (ul * ul + vl * vl + wl * wl)
+    hr = stiff * pr / rr + half * (ur * ur + vr * vr + wr * wr)
     q = a * (pl - p0) + b * (pr - p0)
     return (
         ml + mr,
         ml * ul + mr * ur + q * nx,
         ml * vl + mr * vr + q * ny,
         ml * wl + mr * wr + q * nz,
-        a * unl * (el + pl) + b * unr * (er + pr) + d * (er - el),
+        ml * hl + mr * hr,
     )
