@@ -291,6 +291,11 @@ def horus_of_unit(unit: str) -> Callable[[], str]:
     return block
 
 
+def _digits(value: float) -> str:
+    """Two significant digits; all before the point from 100 on."""
+    return f"{value:.0f}" if abs(value) >= 99.5 else f"{value:.2g}"
+
+
 def trust() -> str:
     """One row per validation case and quantity: the typical deviation, and how many rows lie inside the band."""
     from statistics import median
@@ -305,7 +310,7 @@ def trust() -> str:
             own = [record for record in records if (record.quantity, record.kind) == (quantity, kind)]
             gaps = [abs(record.deviation) for record in own if record.deviation is not None]
             scale, unit = (100.0, " %") if kind == "relative" else (1.0, "")
-            typical = "-" if not gaps else f"{scale * median(gaps):.2g}{unit}"
+            typical = "-" if not gaps else f"{_digits(scale * median(gaps))}{unit}"
             inside = f"{sum(record.within for record in own)} of {len(own)}"
             rows.append((case, quantity, typical, f"{scale * own[0].band:.3g}{unit}", inside))
     return table(("case", "quantity", "median deviation", "band", "inside"), rows, "llrrr")

@@ -31,9 +31,9 @@ class FlowSettings:
         low_mach: local Mach number below which the low-Mach correction stops shrinking the normal jump; 1 switches it
             off.
         wall_stiffness: share of the acoustic response to flow through the wall added to the wall pressure (0 to 1).
-        cfl_start, cfl_max: pseudo-time CFL numbers; the impulsive start on the coarsest level uses a fifth of
-            `cfl_start`, and above
-            Mach 5 both are lowered (to 1 for the impulsive start).
+        cfl_start: first pseudo-time CFL number; the impulsive start on the coarsest level uses a fifth of it, and from
+            Mach 2 to 5 it falls (to 1 for the impulsive start).
+        cfl_max: largest CFL number; falls to 20 from Mach 2 to 5.
         sweeps: symmetric Gauss-Seidel sweeps per iteration.
         anderson_depth: earlier iterates combined by Anderson acceleration; 0 switches it off.
         iterations: most iterations on the fine mesh.
