@@ -11,6 +11,7 @@ machine (processor, cores, cells, conditions); a machine without one is told so 
 from __future__ import annotations
 
 import argparse
+import dataclasses
 import json
 import os
 import platform
@@ -32,6 +33,7 @@ from spaceplane.vehicle.controls import ControlDeflections
 from spaceplane.vehicle.presets import horus_2b
 
 BASELINE = Path(__file__).with_name("baseline.json")
+WIDTHS = (3.0, 3.2, 3.3)
 DEFLECTED = {"body_flap": -20.0, "elevon_left": -17.5, "elevon_right": -17.5}
 
 
@@ -59,7 +61,12 @@ def measure(cells: int, count: int) -> dict[str, float]:
     warm_up = generate(build(vehicle.shape, deflections), MeshSettings(wall_cell=0.5))
     solve(warm_up, conditions(count), FlowSettings())
 
-    geometry, surface = timed(lambda: build(vehicle.shape, deflections), repeats=3)
+    # Parts are remembered between builds: every repeat has a new shape.
+    shapes = iter(
+        [dataclasses.replace(vehicle.shape, wing_width_m=width, nose_radius_m=0.01 + width / 4) for width in WIDTHS]
+    )
+    geometry, _ = timed(lambda: build(next(shapes), deflections), repeats=len(WIDTHS))
+    surface = build(vehicle.shape, deflections)
     meshing, mesh = timed(lambda: generate(surface, MeshSettings(target_cells=cells)))
     solving, solution = timed(lambda: solve(mesh, conditions(count), FlowSettings()))
     iterations = sum(record.iterations for record in solution.records)
