@@ -38,8 +38,7 @@ def solve(
 
     Returns:
         Solution with one ConvergenceRecord per condition. A condition that fails twice has NaN as state and wall
-        pressure
-        and the verdict "failed".
+        pressure and the verdict "failed".
 
     Raises:
         InputError: bad conditions or a mesh without cells.
@@ -54,7 +53,7 @@ def solve(
         raise InputError("mesh: 0 cells; at least one is needed")
     cold = not CACHE.is_complete(settings.precision)
     if cold:
-        say("compile", 0, 1, "compiling kernels (once, ~20 s)")
+        say("compile", 0, 1, "compiling kernels (once, ~30 s)")
     topologies = [prepare(level, settings.dtype) for level in levels.meshes]
     prepared = time.perf_counter()
     seconds = {"prepare": prepared - began}
@@ -123,25 +122,23 @@ class _Job:
             offset = np.zeros((len(parent), 3), settings.dtype) if offset is None else offset
             result = np.empty((len(parent), 5, len(which)), settings.dtype)
 
-            def finish(
-                column, ensemble, lane, history, last=last, result=result, parent=parent, offset=offset, start=start
-            ):
-                if last:
-                    self._keep(which[column], ensemble, lane, history)
-                elif history.failure or history.drop() < 0.0:
-                    # A level that broke hands on what it was given; the next one may still succeed.
-                    if start is None:
-                        result[:, :, column] = free_stream(ensemble.conditions)[:, column]
-                    else:
-                        result[:, :, column] = start[parent, :, column]
-                else:
-                    prolong(parent, offset, ensemble.state, ensemble.gradient, ensemble.order, lane, result, column)
-
+            hand_on = partial(self._hand_on, start, parent, offset, result)
+            finish = partial(self._keep, which) if last else hand_on
             stop = partial(finished, settings=settings) if last else partial(fallen, decades=1.5 if order == 1 else 2.0)
             tick = partial(self._tell, phase, settings.residual_drop if last else 2.0)
             march(ensemble, limit, caution, stop, finish, tick, start, impulsive=start is None)
             seconds[phase] = seconds.get(phase, 0.0) + time.perf_counter() - began
             start = result
+
+    def _hand_on(self, start, parent, offset, result, column, ensemble, lane, history):
+        """Fill `result[:, :, column]`, where the next finer level starts from, with a lane of this one."""
+        if not history.failure and history.drop() >= 0.0:
+            prolong(parent, offset, ensemble.state, ensemble.gradient, ensemble.order, lane, result, column)
+        # A level that broke hands on what it was given; the next one may still succeed.
+        elif start is None:
+            result[:, :, column] = free_stream(ensemble.conditions)[:, column]
+        else:
+            result[:, :, column] = start[parent, :, column]
 
     def _tell(self, phase: str, aim: float, iteration: int, histories: dict[int, History], active: int) -> None:
         """Report how far a level is, in per cent: conditions by their decades of `aim`, those through with it fully."""
@@ -162,8 +159,9 @@ class _Job:
         offset = fine.cell_center[order] - coarse.cell_center[parent]
         return place[parent], offset.astype(self.settings.dtype)
 
-    def _keep(self, condition, ensemble, lane, history):
+    def _keep(self, which, column, ensemble, lane, history):
         """Store a fine-mesh result, unless an earlier attempt was better."""
+        condition = which[column]
         earlier = self.histories.get(int(condition))
         if earlier is not None and not earlier.failure and (history.failure or history.drop() < earlier.drop()):
             return
