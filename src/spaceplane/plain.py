@@ -89,6 +89,7 @@ def _of_kind(default: Any) -> Callable[[str, Any], Any]:
     """A reader of values of the kind that the default has."""
 
     def read(name: str, value: Any) -> Any:
+        """The value when it is of the default's kind; an InputError naming it otherwise."""
         if isinstance(value, list | tuple):
             bad = [v for v in value if isinstance(v, bool) or not isinstance(v, int | float)]
             if bad:

@@ -46,6 +46,7 @@ def _whole(show: Show, bodies: int) -> Tell:
     reached = 0.0
 
     def tell(line: str, *rest) -> None:
+        """Show what a stage says, with the fraction of the whole."""
         nonlocal reached
         if len(rest) == 1:
             show(line, rest[0])
@@ -93,6 +94,7 @@ def _bar() -> Iterator[Show]:
         task = bar.add_task("starting", total=1.0)
 
         def show(line: str, fraction: float) -> None:
+            """Move the bar."""
             bar.update(task, description=line, completed=min(max(fraction, 0.0), 1.0))
 
         yield show
@@ -103,6 +105,7 @@ def _log() -> Show:
     last = {"stage": "", "at": started}
 
     def show(line: str, fraction: float) -> None:
+        """Print a line when a new stage begins, or after a while."""
         now = time.monotonic()
         stage = line.rpartition(": ")[0] or line
         compiling = "compil" in line  # always said: the first run takes longer, and a reader wonders why

@@ -61,6 +61,7 @@ class _Context:
     category: str
 
     def verdict(self, criterion: str, mode: str, quantity: str, **values: object) -> Verdict:
+        """A verdict with title and paragraph of the criterion; `values` are the other fields of `Verdict`."""
         entry = limits.specification()[criterion]
         return Verdict(
             mode,
@@ -73,6 +74,7 @@ class _Context:
         )
 
     def entry(self, criterion: str) -> dict:
+        """Limits of the criterion for this class and category."""
         return limits.of(criterion, self.category, self.vehicle_class)  # type: ignore[return-value]
 
 

@@ -118,6 +118,7 @@ def write_netcdf(result: dict, folder: Path) -> list[Path]:
     variables: dict[str, tuple] = {}
 
     def fill(rows: Iterable[dict], name_of: Callable[[dict], Iterable[tuple[str, float | None, str]]]) -> None:
+        """Put rows into the variables that `name_of` gives them: (name, value, unit)."""
         for row in rows:
             for name, value, unit in name_of(row):
                 empty = np.full((len(points), len(parts)), np.nan)

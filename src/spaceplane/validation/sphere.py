@@ -56,6 +56,7 @@ def sphere_records(solution: Solution) -> list[Record]:
         where = f"Mach {mach:g}"
 
         def row(quantity, published, computed, band, source, kind="relative", where=where, good=good, **more) -> Record:
+            """A record of this condition; without a computed value where the flow did not converge."""
             return Record(
                 case=CASE,
                 quantity=quantity,

@@ -69,6 +69,7 @@ def write_glb(surface: Surface, path: str | Path) -> Path:
     materials: list[dict] = []
 
     def add(array: np.ndarray, target: int, kind: str, component: int, bounds: bool = False) -> int:
+        """Append an array to the buffer, aligned; the index of its accessor."""
         while len(blob) % 4:
             blob.append(0)
         views.append({"buffer": 0, "byteOffset": len(blob), "byteLength": array.nbytes, "target": target})
