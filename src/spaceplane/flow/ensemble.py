@@ -67,9 +67,8 @@ class Ensemble:
         self.sensor = np.zeros((cells, LANES), dtype)
         self.hold = np.zeros(LANES, dtype)
         self.inverse = np.zeros((cells, 25 * LANES), dtype)
-        mach = conditions.mach[self.lanes]
-        self.per_pressure = (2.0 / mach**2).astype(dtype)
-        self.ceiling = (HIGHEST_ENTHALPY * (1.0 / (conditions.gamma - 1.0) + 0.5 * mach**2)).astype(dtype)
+        self.per_pressure, self.ceiling = np.empty((2, LANES), dtype)
+        self.scale(np.arange(LANES))
         self.anderson = Anderson(cells, self.free, settings.anderson_depth if order == 2 else 0)
 
     def seat(self, lane: int, condition: int, state: np.ndarray | None) -> None:
@@ -78,13 +77,17 @@ class Ensemble:
         self.free[:, lane] = free_stream(self.conditions)[:, condition]
         self.far[:, :, lane] = self.free[:, lane]
         self.state[:, :, lane] = self.free[:, lane] if state is None else state
-        mach = self.conditions.mach[condition]
-        self.per_pressure[lane] = 2.0 / mach**2
-        self.ceiling[lane] = HIGHEST_ENTHALPY * (1.0 / (self.conditions.gamma - 1.0) + 0.5 * mach**2)
+        self.scale(np.array([lane]))
         self.hold[lane] = 0
         self.sensor[:, lane] = 0
         self.mirror(self.state, np.arange(LANES) == lane)
         self.anderson.forget(lane, self.free)
+
+    def scale(self, lanes: np.ndarray) -> None:
+        """Set dynamic pressure and ceiling of total enthalpy in these lanes, by the conditions they hold."""
+        mach = self.conditions.mach[self.lanes[lanes]]
+        self.per_pressure[lanes] = 2.0 / mach**2
+        self.ceiling[lanes] = HIGHEST_ENTHALPY * (1.0 / (self.conditions.gamma - 1.0) + 0.5 * mach**2)
 
     def evaluate(self) -> np.ndarray:
         """Compute the residual of the present state; its norm [lane], fp64."""

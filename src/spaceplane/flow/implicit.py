@@ -151,27 +151,33 @@ def invert(block):
                     block[down + n] *= -block[pivot + n]
 
 
+@inlined
+def between(rows, i, there, j, n, nx, ny, nz, gamma):
+    """`face_average` of cell i of `rows` and row j of `there`, in lane n."""
+    return face_average(
+        rows[i, RHO + n],
+        rows[i, VX + n],
+        rows[i, VY + n],
+        rows[i, VZ + n],
+        rows[i, PRS + n],
+        there[j, RHO + n],
+        there[j, VX + n],
+        there[j, VY + n],
+        there[j, VZ + n],
+        there[j, PRS + n],
+        nx,
+        ny,
+        nz,
+        gamma,
+    )
+
+
 @distinct
 def add_face(block, radius, rows, i, there, j, theta, scale, nx, ny, nz, gamma):
     """Add scale * Q of the face between cell i of `rows` and row j of `there` to `block`, its spectral radius to
     `radius`; `theta` [lane] weight of HLLE."""
     for n in range(LANES):
-        r, u, v, w, a, un = face_average(
-            rows[i, RHO + n],
-            rows[i, VX + n],
-            rows[i, VY + n],
-            rows[i, VZ + n],
-            rows[i, PRS + n],
-            there[j, RHO + n],
-            there[j, VX + n],
-            there[j, VY + n],
-            there[j, VZ + n],
-            there[j, PRS + n],
-            nx,
-            ny,
-            nz,
-            gamma,
-        )
+        r, u, v, w, a, un = between(rows, i, there, j, n, nx, ny, nz, gamma)
         d0, dp, dm = wave_dissipation(un, a, theta[n])
         radius[n] += scale * (abs(un) + a)
         add_dissipation(block, n, scale, r, u, v, w, a, d0, dp, dm, nx, ny, nz, gamma)
@@ -288,22 +294,7 @@ def add_products(sums, rows, sensor, change, i, j, scale, nx, ny, nz, gamma):
         d_v = change[j, VY + n]
         d_w = change[j, VZ + n]
         d_p = change[j, PRS + n]
-        r, u, v, w, a, un = face_average(
-            rows[i, RHO + n],
-            rows[i, VX + n],
-            rows[i, VY + n],
-            rows[i, VZ + n],
-            rows[i, PRS + n],
-            rj,
-            uj,
-            vj,
-            wj,
-            pj,
-            nx,
-            ny,
-            nz,
-            gamma,
-        )
+        r, u, v, w, a, un = between(rows, i, rows, j, n, nx, ny, nz, gamma)
         d0, dp, dm = wave_dissipation(un, a, max(sensor[i, n], sensor[j, n]))
         f0, f1, f2, f3, f4 = flux_increment(rj, uj, vj, wj, pj, d_r, d_u, d_v, d_w, d_p, nx, ny, nz, gamma)
         g0, g1, g2, g3, g4 = dissipation_increment(

@@ -24,5 +24,5 @@ def prolong(parent, offset, state, gradient, order, lane, out, column):
                 step = value - value
                 for a in range(3):
                     step += gradient[j, a, k * LANES + lane] * offset[i, a]
-                value = guarded(value, step) if k == 0 or k == 4 else value + step
+                value = guarded(value, value + step) if k == 0 or k == 4 else value + step
             out[i, k, column] = value

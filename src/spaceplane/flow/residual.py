@@ -12,10 +12,9 @@ from spaceplane.flow.fluxes import blend, hllc, shrink_normal_jump
 
 
 @inlined
-def guarded(value, step):
-    """value + step, or value where that would fall below a fifth of it: densities and pressures stay positive."""
-    real = type(value)
-    return value + step if value + step > real(0.2) * value else value
+def guarded(value, new):
+    """`new`, or `value` where that would fall below a fifth of it: densities and pressures stay positive."""
+    return new if new > type(value)(0.2) * value else value
 
 
 @inlined
@@ -33,13 +32,9 @@ def reconstruct(rows, gradient, i, dx, dy, dz, side):
     """Fill `side` with the state of cell i at (dx, dy, dz) from its centroid."""
     for m in range(ROW):
         side[m] = rows[i, m] + (gradient[i, 0, m] * dx + gradient[i, 1, m] * dy + gradient[i, 2, m] * dz)
-    # As `guarded`.
-    fifth = type(dx)(0.2)
     for n in range(LANES):
-        r = rows[i, RHO + n]
-        p = rows[i, PRS + n]
-        side[RHO + n] = side[RHO + n] if side[RHO + n] > fifth * r else r
-        side[PRS + n] = side[PRS + n] if side[PRS + n] > fifth * p else p
+        side[RHO + n] = guarded(rows[i, RHO + n], side[RHO + n])
+        side[PRS + n] = guarded(rows[i, PRS + n], side[PRS + n])
 
 
 @inlined
@@ -186,7 +181,7 @@ def push_wall(topology, rows, gradient, i, row, gamma, stiffness, order, out):
     for n in range(LANES):
         p = rows[i, PRS + n]
         step = gradient[i, 0, PRS + n] * dx + gradient[i, 1, PRS + n] * dy + gradient[i, 2, PRS + n] * dz
-        p_wall = guarded(p, step)
+        p_wall = guarded(p, p + step)
         r = rows[i, RHO + n]
         u = rows[i, VX + n]
         v = rows[i, VY + n]
