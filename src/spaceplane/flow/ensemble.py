@@ -39,6 +39,7 @@ class Ensemble:
         lanes: [lane] condition of each lane; `count` lanes were given a condition of their own at the start.
         state, residual, change: [cell, 5, lane]; passed: products that a sweep leaves to the next.
         gradient: [cell, axis, 5 x lane]; sensor: [cell, lane]; inverse: [cell, 25 x lane] inverse diagonal blocks.
+        pace: [cell, lane] share of the lane's CFL number that a cell marches with.
     """
 
     def __init__(self, mesh: Mesh, topology: Topology, conditions: FlowConditions, settings: FlowSettings, order: int):
@@ -66,6 +67,7 @@ class Ensemble:
         self.gradient = np.zeros((cells, 3, ROW), dtype)
         self.sensor = np.zeros((cells, LANES), dtype)
         self.hold = np.zeros(LANES, dtype)
+        self.pace = np.ones((cells, LANES), dtype)
         self.inverse = np.zeros((cells, 25 * LANES), dtype)
         self.per_pressure, self.ceiling = np.empty((2, LANES), dtype)
         self.scale(np.arange(LANES))
@@ -80,6 +82,7 @@ class Ensemble:
         self.scale(np.array([lane]))
         self.hold[lane] = 0
         self.sensor[:, lane] = 0
+        self.pace[:, lane] = 1
         self.mirror(self.state, np.arange(LANES) == lane)
         self.anderson.forget(lane, self.free)
 
@@ -157,6 +160,7 @@ class Ensemble:
             self.sensor,
             self.far,
             cfl.astype(self.dtype),
+            self.pace,
             again.astype(self.dtype),
             self.gamma,
             self.stiffness(),
@@ -215,6 +219,7 @@ class Ensemble:
             self.dtype(largest),
             self.gamma,
             self.ceiling,
+            self.pace,
             limited,
         )
         return limited.sum(axis=0, dtype=np.float64) / self.mesh.cells

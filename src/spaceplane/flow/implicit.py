@@ -211,7 +211,7 @@ def add_wall(block, radius, rows, i, area, nx, ny, nz, gamma, stiffness):
 
 
 @distinct
-def diagonal_chunk(topology, first, last, rows, sensor, free, cfl, again, gamma, stiffness, out, block, radius, theta):
+def diagonal_chunk(topology, first, last, rows, sensor, free, cfl, pace, again, gamma, stiffness, out, block, radius, theta):
     """The part of `diagonals` for cells `first` to `last`; scratch rows from `block` on."""
     start = topology.start
     other = topology.other
@@ -250,7 +250,7 @@ def diagonal_chunk(topology, first, last, rows, sensor, free, cfl, again, gamma,
             u = rows[i, VX + n]
             v = rows[i, VY + n]
             w = rows[i, VZ + n]
-            add_mass(block, n, radius[n] / cfl[n], rows[i, RHO + n], u, v, w, gamma)
+            add_mass(block, n, radius[n] / (cfl[n] * pace[i, n]), rows[i, RHO + n], u, v, w, gamma)
         invert(block)
         for k in range(0, 25 * LANES, LANES):
             for n in range(LANES):
@@ -258,12 +258,12 @@ def diagonal_chunk(topology, first, last, rows, sensor, free, cfl, again, gamma,
 
 
 @kernel
-def diagonals(topology, state, sensor, free, cfl, again, gamma, stiffness, out):
+def diagonals(topology, state, sensor, free, cfl, pace, again, gamma, stiffness, out):
     """Fill `out` [cell, 25 x lane] with the inverse diagonal blocks, pseudo-time term included.
 
     Args:
         free: [far face, 5, lane] state outside the far field.
-        cfl: [lane] CFL number on the sum of spectral radii over the faces.
+        cfl: [lane] CFL number on the sum of spectral radii over the faces; `pace` [cell, lane] factor on it.
         again: [lane] 0 where the blocks stay as they are.
     """
     rows = state.reshape(state.shape[0], ROW)
@@ -276,7 +276,7 @@ def diagonals(topology, state, sensor, free, cfl, again, gamma, stiffness, out):
         radius = np.empty(LANES, state.dtype)
         theta = np.empty(LANES, state.dtype)
         diagonal_chunk(
-            topology, first, last, rows, sensor, outside, cfl, again, gamma, stiffness, out, block, radius, theta
+            topology, first, last, rows, sensor, outside, cfl, pace, again, gamma, stiffness, out, block, radius, theta
         )
 
 

@@ -122,8 +122,7 @@ class Steering:
         """
         grown = now / np.maximum(self.before, 1e-300)
         factor = np.where(grown < 1.2, self.caution.growth, 1.0)
-        factor = np.where(self.limited > 2e-3, 1.0, factor)
-        factor = np.where(self.limited > 2e-2, 0.7, factor)
+        factor = np.where(self.limited > 2e-2, 1.0, factor)
         factor = np.where(now > 4.0 * self.best, 0.8, factor)
         factor = np.where((grown > 2.0) | (self.limited > 0.1), 0.5, factor)
         return np.maximum(self.cfl * factor, min(0.5, self.caution.cfl_start))
