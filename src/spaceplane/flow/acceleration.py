@@ -184,9 +184,9 @@ def apply_step(
     """state += change - sum of weights[slot, 5 x lane] combined[:, slot], held within physical bounds cell by cell.
 
     The step is scaled so that density and pressure fall by at most `largest` of themselves and rise by twice that, and
-    left out where it is not a number; no density or pressure falls below `THINNEST`; then the total enthalpy is brought down to `ceiling` [lane] at unchanged density
-    and Mach number. Steady flow has the free stream's total enthalpy everywhere, so that the ceiling acts on transients
-    only: in them, large steps would heat wakes until they break.
+    left out where it is not a number; no density or pressure falls below `THINNEST`; then the total enthalpy is brought
+    down to `ceiling` [lane] at unchanged density and Mach number. Steady flow has the free stream's total enthalpy
+    everywhere, so that the ceiling acts on transients only: in them, large steps would heat wakes until they break.
 
     Keeps the change and the step for the next call. `limited` [chunk, lane] counts cells whose step was scaled; their
     `pace` [cell, lane], a factor on the CFL number, is halved, while that of the others grows back to 1: a few cells in

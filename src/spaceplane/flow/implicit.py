@@ -211,7 +211,9 @@ def add_wall(block, radius, rows, i, area, nx, ny, nz, gamma, stiffness):
 
 
 @distinct
-def diagonal_chunk(topology, first, last, rows, sensor, free, cfl, pace, again, gamma, stiffness, out, block, radius, theta):
+def diagonal_chunk(
+    topology, first, last, rows, sensor, free, cfl, pace, again, gamma, stiffness, out, block, radius, theta
+):
     """The part of `diagonals` for cells `first` to `last`; scratch rows from `block` on."""
     start = topology.start
     other = topology.other
