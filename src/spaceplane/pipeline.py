@@ -19,7 +19,6 @@ from spaceplane.analysis.flight import fly
 from spaceplane.analysis.found import Analysis, remarks
 from spaceplane.analysis.settings import AnalyseSettings
 from spaceplane.files import writable_folder
-from spaceplane.flow.solution import FlowConditions
 from spaceplane.progress import Progress, silent
 from spaceplane.report.output import write
 from spaceplane.vehicle.controls import CONTROLS, ControlDeflections
@@ -79,12 +78,11 @@ def _control_runs(
 ) -> tuple[ControlRun, ...]:
     """The base conditions on bodies with one surface moved, on the wall cell, m, of the base mesh."""
     rows = np.array([p.base for p in plan.points])
-    c = plan.conditions
     return control_runs(
         vehicle,
         settings.deflections,
         settings.control_step,
-        FlowConditions(c.mach[rows], c.alpha[rows], c.beta[rows], c.gamma),
+        plan.conditions.take(rows),
         replace(settings.mesh, wall_cell=wall_cell, target_cells=None),
         settings.flow,
         settings.steps.two_step_sizes,

@@ -12,6 +12,7 @@ from spaceplane.flow.freestream import velocity
 from spaceplane.flow.limiters import LIMITERS
 from spaceplane.flow.reconstruction import gradients
 from spaceplane.flow.residual import fluxes, pressures_on_wall
+from spaceplane.flow.rotation import frame_of
 from spaceplane.flow.settings import FlowSettings
 from spaceplane.flow.solution import FlowConditions
 from spaceplane.flow.symmetry import symmetrise
@@ -87,7 +88,8 @@ class Ensemble:
         self.anderson.forget(lane, self.free)
 
     def scale(self, lanes: np.ndarray) -> None:
-        """Set dynamic pressure and ceiling of total enthalpy in these lanes, by the conditions they hold."""
+        """Set dynamic pressure, rotation and ceiling of total enthalpy in these lanes, by the conditions they hold."""
+        self.frame = frame_of(self.conditions, self.lanes, self.dtype)
         mach = self.conditions.mach[self.lanes[lanes]]
         self.per_pressure[lanes] = 2.0 / mach**2
         self.ceiling[lanes] = HIGHEST_ENTHALPY * (1.0 / (self.conditions.gamma - 1.0) + 0.5 * mach**2)
@@ -129,6 +131,7 @@ class Ensemble:
             self.gradient,
             self.sensor,
             self.far,
+            self.frame,
             self.residual,
             self.gamma,
             low_mach,
@@ -191,9 +194,9 @@ class Ensemble:
         self.mirror(self.state)
 
     def mirror(self, field: np.ndarray, which: np.ndarray | bool = True) -> None:
-        """Make a field [cell, 5, lane] symmetric in the lanes (of `which`) without sideslip, on meshes that mirror
-        themselves."""
-        share = np.where((self.conditions.beta[self.lanes] == 0.0) & which, 0.5, 0.0).astype(self.dtype)
+        """Make a field [cell, 5, lane] symmetric in the lanes (of `which`) with a symmetric stream, on meshes that
+        mirror themselves."""
+        share = np.where(self.conditions.symmetric()[self.lanes] & which, 0.5, 0.0).astype(self.dtype)
         if len(self.topology.mirror) and share.any():
             symmetrise(self.topology.mirror, field, share)
 

@@ -9,6 +9,7 @@ from numba import prange
 
 from spaceplane.flow.compiled import LANES, PRS, RHO, ROW, VX, VY, VZ, distinct, inlined, kernel
 from spaceplane.flow.fluxes import blend, hllc, shrink_normal_jump
+from spaceplane.flow.rotation import add_turning, carry_back, face_speed, follow
 
 
 @inlined
@@ -90,6 +91,7 @@ def flux_chunk(
     gradient,
     sensor,
     free,
+    frame,
     residual,
     gamma,
     low_mach,
@@ -98,6 +100,7 @@ def flux_chunk(
     left,
     right,
     theta,
+    speed,
     f,
 ):
     """The part of `fluxes` for the cells of one chunk; scratch rows from `left` on."""
@@ -108,6 +111,9 @@ def flux_chunk(
     normal = topology.face_normal
     face_area = topology.face_area
     reach = topology.face_reach
+    swirl = topology.face_swirl
+    edge_swirl = topology.boundary_swirl
+    turns = frame.turns[0] != 0
     edge_start = topology.edge_start
     edge_row = topology.edge_row
     walls = topology.walls
@@ -130,6 +136,10 @@ def flux_chunk(
         else:
             reconstruct(rows, gradient, i, reach[face, 0], reach[face, 1], reach[face, 2], left)
             reconstruct(rows, gradient, j, reach[face, 3], reach[face, 4], reach[face, 5], right)
+        if turns:
+            face_speed(frame, swirl[face, 0], swirl[face, 1], swirl[face, 2], nx, ny, nz, speed)
+            follow(left, speed, nx, ny, nz)
+            follow(right, speed, nx, ny, nz)
         highest = zero
         for n in range(LANES):
             theta[n] = max(sensor[i, n], sensor[j, n])
@@ -138,6 +148,8 @@ def flux_chunk(
             blend_face(left, right, theta, nx, ny, nz, area, gamma, p0, low_mach, f)
         else:
             hllc_face(left, right, theta, nx, ny, nz, area, gamma, p0, low_mach, f)
+        if turns:
+            carry_back(f, speed, nx, ny, nz)
         if i >= first and i < last:
             for m in range(ROW):
                 residual[i, m] += f[m]
@@ -152,6 +164,8 @@ def flux_chunk(
             ny = topology.boundary_normal[row, 1]
             nz = topology.boundary_normal[row, 2]
             area = topology.boundary_area[row]
+            if turns:
+                face_speed(frame, edge_swirl[row, 0], edge_swirl[row, 1], edge_swirl[row, 2], nx, ny, nz, speed)
             if row < walls:
                 push_wall(topology, rows, gradient, i, row, gamma, stiffness, order, f)
                 for n in range(LANES):
@@ -159,13 +173,23 @@ def flux_chunk(
                     residual[i, VX + n] += q * nx
                     residual[i, VY + n] += q * ny
                     residual[i, VZ + n] += q * nz
+                if turns:
+                    for n in range(LANES):
+                        residual[i, PRS + n] += area * (f[n] - p0) * speed[n]
             else:
                 for k in range(ROW):
                     left[k] = rows[i, k]
                     right[k] = free[row - walls, k]
+                if turns:
+                    follow(left, speed, nx, ny, nz)
+                    follow(right, speed, nx, ny, nz)
                 hllc_face(left, right, theta, nx, ny, nz, area, gamma, p0, real(1), f)
+                if turns:
+                    carry_back(f, speed, nx, ny, nz)
                 for k in range(ROW):
                     residual[i, k] += f[k]
+        if turns:
+            add_turning(frame, rows, residual, i, topology.volume[i])
 
 
 @distinct
@@ -190,12 +214,13 @@ def push_wall(topology, rows, gradient, i, row, gamma, stiffness, order, out):
 
 
 @kernel
-def fluxes(topology, state, gradient, sensor, free, residual, gamma, low_mach, stiffness, order):
+def fluxes(topology, state, gradient, sensor, free, frame, residual, gamma, low_mach, stiffness, order):
     """Fill `residual` [cell, 5, lane] with the net outflow of mass, momentum and energy.
 
     Args:
         state: [cell, 5, lane]; gradient: [cell, axis, 5 x lane] limited; sensor: [cell, lane] weight of HLLE.
         free: [far face, 5, lane] state outside the far field.
+        frame: how the lanes turn, see `rotation.Frame`.
         low_mach: smallest local Mach number to which the normal jump is scaled down; 1 switches the correction off.
         stiffness: see `wall_pressure`.
         order: 1 ignores the gradients.
@@ -207,6 +232,7 @@ def fluxes(topology, state, gradient, sensor, free, residual, gamma, low_mach, s
         left = np.empty(ROW, state.dtype)
         right = np.empty(ROW, state.dtype)
         theta = np.empty(LANES, state.dtype)
+        speed = np.empty(LANES, state.dtype)
         f = np.empty(ROW, state.dtype)
         flux_chunk(
             topology,
@@ -215,6 +241,7 @@ def fluxes(topology, state, gradient, sensor, free, residual, gamma, low_mach, s
             gradient,
             sensor,
             outside,
+            frame,
             outflow,
             gamma,
             low_mach,
@@ -223,6 +250,7 @@ def fluxes(topology, state, gradient, sensor, free, residual, gamma, low_mach, s
             left,
             right,
             theta,
+            speed,
             f,
         )
 

@@ -128,4 +128,20 @@ def check(conditions: FlowConditions) -> FlowConditions:
             raise InputError(f"{name}: {np.abs(values[name]).max():g} rad is not allowed; -pi to pi")
     if not (np.isfinite(conditions.gamma) and 1.0 < conditions.gamma <= 3.0):
         raise InputError(f"gamma: {conditions.gamma} is not allowed; greater than 1, at most 3")
-    return FlowConditions(values["mach"], values["alpha"], values["beta"], float(conditions.gamma))
+    rates, center = _check_rotation(conditions, values["mach"])
+    return FlowConditions(values["mach"], values["alpha"], values["beta"], float(conditions.gamma), rates, center)
+
+
+def _check_rotation(conditions: FlowConditions, mach: np.ndarray) -> tuple[np.ndarray | None, tuple]:
+    """Rates [condition, 3] and centre as finite numbers; no rates where nothing turns."""
+    center = np.asarray(conditions.center, dtype=float)
+    if center.shape != (3,) or not np.isfinite(center).all():
+        raise InputError(f"center: {conditions.center} is not allowed; three finite lengths, m")
+    if conditions.rates is None:
+        return None, tuple(center)
+    rates = np.asarray(conditions.rates, dtype=float)
+    if rates.shape != (len(mach), 3) or not np.isfinite(rates).all():
+        raise InputError(
+            f"rates: shape {rates.shape} is not allowed; finite p, q, r for each of {len(mach)} conditions"
+        )
+    return (rates if rates.any() else None), tuple(center)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -18,15 +18,36 @@ class FlowConditions:
         alpha: [condition] angle of attack, rad, nose up positive.
         beta: [condition] sideslip, rad, wind from the right positive.
         gamma: ratio of specific heats.
+        rates: [condition, (p, q, r)] steady roll, pitch and yaw rate of the body about `center` on the free-stream
+            speed of sound, 1/m; None for no rotation.
+        center: (x, y, z) point of the body that moves with the free stream's speed, m, geometry axes.
     """
 
     mach: np.ndarray
     alpha: np.ndarray
     beta: np.ndarray
     gamma: float = 1.4
+    rates: np.ndarray | None = None
+    center: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
     def __len__(self) -> int:
         return len(self.mach)
+
+    def take(self, which: np.ndarray) -> FlowConditions:
+        """The conditions of these indices."""
+        rates = None if self.rates is None else self.rates[which]
+        return replace(self, mach=self.mach[which], alpha=self.alpha[which], beta=self.beta[which], rates=rates)
+
+    def angular_velocity(self) -> np.ndarray:
+        """[condition, xyz] angular velocity of the body in geometry axes, 1/m (x and z of body axes are reversed)."""
+        if self.rates is None:
+            return np.zeros((len(self), 3))
+        return np.asarray(self.rates, dtype=float) * [-1.0, 1.0, -1.0]
+
+    def symmetric(self) -> np.ndarray:
+        """[condition] whether the stream is the same left and right: no sideslip, no roll, no yaw rate."""
+        straight = np.asarray(self.beta) == 0.0
+        return straight if self.rates is None else straight & ~np.asarray(self.rates)[:, [0, 2]].any(axis=1)
 
 
 @dataclass(frozen=True)

@@ -106,8 +106,7 @@ class _Job:
     def run(self, which: np.ndarray, caution: Caution, seconds: dict[str, float]) -> None:
         """March the conditions `which` through all levels, coarse to fine."""
         settings, start = self.settings, None
-        c = self.conditions
-        subset = FlowConditions(c.mach[which], c.alpha[which], c.beta[which], c.gamma)
+        subset = self.conditions.take(which)
         for level, order in stages(len(self.levels.meshes), settings.order):
             began = time.perf_counter()
             mesh, topology = self.levels.meshes[level], self.topologies[level]

@@ -25,6 +25,7 @@ class Topology(NamedTuple):
     Faces of a chunk (a run of cells owned by one thread) are `chunk_faces[chunk_start[k]:chunk_start[k + 1]]`; a face
     between two
     chunks stands in both lists and each chunk adds its own side, so that threads never write to the same cell.
+    `face_swirl`, `boundary_swirl` are the moments of a face's area about the origin on its area: what a rotation sees.
     `boundary` rows are walls first (`walls` of them), then far field; `edge_start` lists them by cell.
     Blocks of cells are coloured so that blocks of one colour do not touch: `color_start`, `color_blocks`.
     `mirror` is the mirror image of each cell in y = 0; empty when the mesh does not mirror itself.
@@ -46,6 +47,7 @@ class Topology(NamedTuple):
     face_normal: np.ndarray
     face_area: np.ndarray
     face_reach: np.ndarray
+    face_swirl: np.ndarray
     chunk_cells: np.ndarray
     chunk_start: np.ndarray
     chunk_faces: np.ndarray
@@ -56,6 +58,7 @@ class Topology(NamedTuple):
     boundary_normal: np.ndarray
     boundary_area: np.ndarray
     boundary_reach: np.ndarray
+    boundary_swirl: np.ndarray
     block_cells: np.ndarray
     color_start: np.ndarray
     color_blocks: np.ndarray
@@ -152,6 +155,17 @@ def _unit(area: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return normal, size
 
 
+def wall_swirl(mesh: Mesh) -> np.ndarray:
+    """[wall, xyz] moment of the area of each wall face about the origin: of its pieces, as a wall face need not be
+    plane."""
+    moment = np.cross(mesh.piece_center, mesh.piece_area)
+    walls = len(mesh.wall_cell)
+    swirl = np.stack([np.bincount(mesh.piece_wall, moment[:, k], walls) for k in range(3)], axis=1)
+    bare = np.bincount(mesh.piece_wall, minlength=walls) == 0
+    swirl[bare] = np.cross(mesh.wall_center[bare], mesh.wall_area[bare])
+    return swirl
+
+
 def prepare(mesh: Mesh, dtype: type) -> Topology:
     """Build the kernels' view of `mesh` in precision `dtype`."""
     cells = mesh.cells
@@ -195,6 +209,7 @@ def prepare(mesh: Mesh, dtype: type) -> Topology:
     edge_cell = place[np.r_[mesh.wall_cell, mesh.far_cell].astype(np.int64)]
     edge_normal, edge_area = _unit(np.concatenate([mesh.wall_area, mesh.far_area]))
     edge_reach = np.concatenate([mesh.wall_center, mesh.far_center]) - center[edge_cell]
+    edge_swirl = np.concatenate([wall_swirl(mesh), np.cross(mesh.far_center, mesh.far_area)])
     edge_start, edge_row = group(edge_cell, cells)
 
     def real(x: np.ndarray) -> np.ndarray:
@@ -220,6 +235,7 @@ def prepare(mesh: Mesh, dtype: type) -> Topology:
         face_normal=real(normal),
         face_area=real(area),
         face_reach=real(reach),
+        face_swirl=real(np.cross(face_center, normal)),
         chunk_cells=index(chunk_cells),
         chunk_start=index(chunk_start),
         chunk_faces=index(listed[listed_rows]),
@@ -230,6 +246,7 @@ def prepare(mesh: Mesh, dtype: type) -> Topology:
         boundary_normal=real(edge_normal),
         boundary_area=real(edge_area),
         boundary_reach=real(edge_reach),
+        boundary_swirl=real(edge_swirl / np.where(edge_area > 0.0, edge_area, 1.0)[:, None]),
         block_cells=index(block_cells),
         color_start=index(color_start),
         color_blocks=index(blocks),
