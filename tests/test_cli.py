@@ -258,7 +258,7 @@ def test_unwritable_flow_output(capfd, tmp_path, option, name):
         ("--mach", ""), ("--mach", "0"), ("--mach", "-2"), ("--mach", "two"), ("--mach", "nan"), ("--mach", "1,,2"),
         ("--alpha", "abc"), ("--alpha", ""), ("--alpha", "95"), ("--alpha", "5,5"), ("--beta", "x"), ("--area", "0"),
         ("--area", "-1"), ("--area", "big"), ("--length", "0"), ("--span", "inf"), ("--moment-center", "0,0"),
-        ("--moment-center", "a,b,c"), ("--rates", "0,0"), ("--rates", "0,0.1,0"), ("--cell", "0"), ("--cells", "-5"),
+        ("--moment-center", "a,b,c"), ("--rates", "0,0"), ("--altitude", "up"), ("--cell", "0"), ("--cells", "-5"),
         ("--precision", "half"), ("--vtu", "field.txt"),
     ],
 )  # fmt: skip
@@ -266,6 +266,12 @@ def test_bad_flow_options(capfd, tmp_path, option, text):
     body = tetrahedron(tmp_path / "t.stl")
     options = {"--mach": "2", "--alpha": "0", **dict(zip(FLOW[::2], FLOW[1::2], strict=True))} | {option: text}
     refused(capfd, "flow", body, *(x for pair in options.items() for x in pair), naming=option)
+
+
+def test_rates_and_altitudes_that_no_flight_has(capfd, tmp_path):
+    body = tetrahedron(tmp_path / "t.stl")
+    refused(capfd, "flow", body, "--mach", 2, *FLOW, "--rates", "0,5000,0", naming="rates")
+    refused(capfd, "flow", body, "--mach", 2, *FLOW, "--altitude", "1e6", naming="altitude")
 
 
 def test_missing_flow_option(capfd, tmp_path):

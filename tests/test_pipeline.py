@@ -28,9 +28,11 @@ def newtonian(failing=(), oscillating=()):
     """A stand-in for `solve`: Cp = 2 cos^2 on wall that the wind sees, 0 elsewhere; some conditions do not converge."""
 
     def solve(mesh, conditions, settings=None, progress=None):
-        wind = direction(conditions.alpha, conditions.beta)
         normal = mesh.wall_area / np.linalg.norm(mesh.wall_area, axis=1)[:, None]
-        cp = 2.0 * np.clip(normal @ wind.T, 0.0, 1.0) ** 2 + 0.01 * conditions.mach
+        # The wall of a turning body moves into the air.
+        turned = np.cross(mesh.wall_center - conditions.center, normal) @ conditions.angular_velocity().T
+        met = normal @ direction(conditions.alpha, conditions.beta).T - turned / conditions.mach
+        cp = 2.0 * np.clip(met, 0.0, 1.0) ** 2 + 0.01 * conditions.mach
         pressure = 1.0 / conditions.gamma + cp * 0.5 * conditions.mach**2
         records = []
         for i in range(len(conditions)):
@@ -86,7 +88,8 @@ def test_result_holds_the_whole_chain(written):
         assert all(error == 0.0 for error in point["coefficient_errors"].values())  # nothing wanders in this flow
         labels = [row["label"] for row in point["convergence"]]
         assert labels[:6] == ["base", "alpha+", "alpha-", "mach+", "mach-", "beta"]
-        assert labels[6:] == ["elevon_left +10 deg", "rudder_left +10 deg", "body_flap +10 deg"]
+        assert labels[6:10] == ["p", "q+", "q-", "r"]
+        assert labels[10:] == ["elevon_left +10 deg", "rudder_left +10 deg", "body_flap +10 deg"]
     assert math.isclose(result["flight_points"][1]["alpha_deg"], 16.6)
 
 
@@ -131,6 +134,23 @@ def test_signs_of_control_derivatives_and_mirror_images(analysis):
         assert at[f"{name}_rudder_right"] == pytest.approx(sign * at[f"{name}_rudder_left"], abs=1e-12)
 
 
+def test_damping_derivatives_damp_and_reach_the_equations(written, analysis):
+    """Signs that hold for any body behind and beside its moment centre in impact flow, and their place in A."""
+    slopes = analysis.derivatives.sel(part="total")
+    for name in ("Cl_p", "Cm_q", "Cn_r"):
+        assert (slopes[name] < 0.0).all(), name
+    paths, _ = written
+    result = json.loads(paths["result.json"].read_text(encoding="utf-8"))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(bodies, "solve", newtonian())
+        still = analyse(horus_2b(), replace(SETTINGS, mach=(2.5,), controls=False, steps=DerivativeSteps(rate=0.0)))
+    assert "Cm_q" not in still.derivatives
+    states = list(still.points[0].system.states)
+    q = states.index("q")
+    turning, without = np.array(result["flight_points"][1]["A"]), still.points[0].system.A
+    assert turning[q, q] < without[q, q] - 1e-3
+
+
 def test_files_read_back(written, analysis):
     paths, folder = written
     assert sorted(p.name for p in folder.iterdir()) == sorted(paths)
@@ -138,7 +158,7 @@ def test_files_read_back(written, analysis):
     assert {"Cp_Mach 1.5", "Cp_Mach 2.5", "part"} <= set(body.cell_data)
     database = AeroDatabase.load(paths["aero.nc"]).data
     assert list(database.point.values) == ["Mach 1.5", "Mach 2.5"]
-    assert database.sizes["case"] == 12 + 3 * 2
+    assert database.sizes["case"] == 20 + 3 * 2
     moved = database.sel(case=database.label == "elevon_left +10 deg")
     np.testing.assert_allclose(np.degrees(moved.elevon_left), -7.5)
     assert "Mach 2.5" in paths["report.html"].read_text(encoding="utf-8")
@@ -150,7 +170,7 @@ def test_asymmetric_deflections_solve_every_surface_and_both_sideslips(monkeypat
     settings = AnalyseSettings(mach=(2.5,), deflections=deflections, mesh=SETTINGS.mesh)
     found = analyse(horus_2b(), settings)
     assert [run.surface for run in found.control_runs] == list(CONTROLS)
-    assert found.plan.labels[-2:] == ("beta+", "beta-")
+    assert found.plan.labels[5:] == ("beta+", "beta-", "p+", "p-", "q+", "q-", "r+", "r-")
     assert abs(float(found.coefficients.Cl.sel(part="total")[0])) > 1e-3
 
 
@@ -158,7 +178,7 @@ def test_two_step_sizes_halve_every_step_and_shrink_the_truncation_error(monkeyp
     monkeypatch.setattr(bodies, "solve", newtonian())
     steps = replace(SETTINGS.steps, two_step_sizes=True)
     found = analyse(horus_2b(), replace(SETTINGS, mach=(2.5,), steps=steps))
-    assert len(found.plan.conditions) == 1 + 2 * 5
+    assert len(found.plan.conditions) == 1 + 2 * 9
     halves = [math.degrees(run.step) for run in found.control_runs]
     assert halves == pytest.approx([10.0, 5.0] * 3)
     one, two = (data.derivatives.sel(part="total").isel(point=-1) for data in (analysis, found))
@@ -168,7 +188,7 @@ def test_two_step_sizes_halve_every_step_and_shrink_the_truncation_error(monkeyp
 
 
 def test_a_failed_condition_poisons_what_rests_on_it_and_says_so(monkeypatch, tmp_path):
-    monkeypatch.setattr(bodies, "solve", newtonian(failing={1, 6}))  # Mach 1.5 alpha+, Mach 2.5 base
+    monkeypatch.setattr(bodies, "solve", newtonian(failing={1, 10}))  # Mach 1.5 alpha+, Mach 2.5 base
     settings = AnalyseSettings(mach=(1.5, 2.5), controls=False, mesh=SETTINGS.mesh)
     found = analyse(horus_2b(), settings)
     paths = pipeline.write(found, tmp_path)

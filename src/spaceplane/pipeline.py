@@ -42,7 +42,8 @@ def analyse(vehicle: Vehicle, settings: AnalyseSettings | None = None, progress:
     settings = settings or AnalyseSettings()
     say = progress or silent
     points = settings.flight_points()
-    plan = plan_conditions(list(points), settings.steps, is_symmetric(settings.deflections))
+    symmetric = is_symmetric(settings.deflections)
+    plan = plan_conditions(list(points), settings.steps, symmetric, reference=vehicle.reference)
     body = solve_vehicle(vehicle, settings.deflections, plan.conditions, settings.mesh, settings.flow, say, "base")
     say("coefficients", 0, 1, "")
     coefficients = integrate(body.solution, vehicle.reference)
@@ -52,7 +53,7 @@ def analyse(vehicle: Vehicle, settings: AnalyseSettings | None = None, progress:
     if settings.controls:
         wall_cell = float(body.solution.mesh.record["wall_cell_m"])
         runs = _control_runs(vehicle, settings, plan, wall_cell, say)
-        slopes = slopes_of(base, runs, is_symmetric(settings.deflections))
+        slopes = slopes_of(base, runs, symmetric)
         derivatives = xr.merge([derivatives, slopes], join="exact")
     say("flight dynamics", 0, 1, "")
     length = float(np.ptp(body.surface.bounds[:, 0]))

@@ -16,7 +16,8 @@ from spaceplane.validation.bodies import cone
 from spaceplane.vehicle.properties import ReferenceLengths
 
 KEYS = {
-    "mach", "alpha_deg", "beta_deg", "CL", "CD", "CY", "Cl", "Cm", "Cn", "CA", "CN", "CA_forebody", "CA_base",
+    "mach", "alpha_deg", "beta_deg", "p_hat", "q_hat", "r_hat",
+    "CL", "CD", "CY", "Cl", "Cm", "Cn", "CA", "CN", "CA_forebody", "CA_base",
     "Cp_max", "Cp_min", "converged", "verdict", "residual_drop", "iterations", "seconds", "cells", "reason",
 }  # fmt: skip
 HALF_ANGLE = math.radians(20.0)
@@ -52,6 +53,17 @@ def test_a_cone_meets_the_exact_pressure_drag_and_pitch_equals_yaw(case):
     assert pitched["Cm"] < 0.0
     for name in ("CY", "Cl", "Cn"):
         assert abs(straight[name]) < 1e-4
+
+
+def test_a_cone_that_pitches_about_its_apex_resists():
+    """Wall that moves into the air is pressed back, and q c/2V is what the record says."""
+    body, q = cone(HALF_ANGLE), 0.06
+    (turning,) = run_flow(body, [3.0], [0.0], [0.0], REFERENCE, MESH, FlowSettings(), rates=(0.0, q, 0.0)).records
+    assert turning["q_hat"] == pytest.approx(q / (2 * 3.0))
+    # Every station x meets the air at q x/V more than at rest; constant incidence of 2/3 q/V has about that moment.
+    assert -2.0 * 1.686 * q / 3.0 < turning["Cm"] < -0.4 * 1.686 * q / 3.0
+    for name in ("CY", "Cl", "Cn"):
+        assert abs(turning[name]) < 1e-4
 
 
 def test_failed_conditions_have_no_values(case):

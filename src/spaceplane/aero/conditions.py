@@ -3,15 +3,21 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
 
 from spaceplane.errors import InputError
 from spaceplane.flow.solution import FlowConditions
+from spaceplane.vehicle.properties import ReferenceLengths
 
 BASE = "base"
+RATES = ("p", "q", "r")
+LARGEST_RATE = 0.05
+"""Reduced rate: a wing tip then moves at a twentieth of the flight speed, well within what is linear."""
+MIRRORED = ("beta", "p", "r")
+"""Quantities that change sign in a mirror; at zero one side of them stands for the other on a symmetric vehicle."""
 
 
 class AeroPoint(Protocol):
@@ -36,12 +42,14 @@ class DerivativeSteps:
         alpha: angle-of-attack step, rad.
         beta: sideslip step, rad.
         mach_fraction: Mach step as a fraction of the Mach number.
+        rate: step of the reduced rates p b/2V, q c/2V and r b/2V; 0 leaves the damping derivatives out.
         two_step_sizes: also solve at half the steps, for Richardson's extrapolation and error estimate.
     """
 
     alpha: float = math.radians(1.0)
     beta: float = math.radians(2.0)
     mach_fraction: float = 0.05
+    rate: float = 0.01
     two_step_sizes: bool = False
 
     def __post_init__(self) -> None:
@@ -52,6 +60,8 @@ class DerivativeSteps:
         ):
             if not (math.isfinite(value) and 0.0 < value <= upper):
                 raise InputError(f"derivative step {name} = {value}: above 0 and at most {upper:.4g}")
+        if not (math.isfinite(self.rate) and 0.0 <= self.rate <= LARGEST_RATE):
+            raise InputError(f"derivative step rate = {self.rate}: 0 to {LARGEST_RATE:g}")
 
 
 @dataclass(frozen=True)
@@ -59,8 +69,8 @@ class Variation:
     """One varied quantity of a flight point and the conditions that hold its two sides.
 
     Attributes:
-        quantity: "alpha", "beta" or "mach".
-        step: full distance from the base to either side, rad or Mach number.
+        quantity: "alpha", "beta", "mach", "p", "q" or "r".
+        step: full distance from the base to either side, rad, Mach number or reduced rate.
         plus: index of the condition at base + step.
         minus: index of the condition at base - step; None where the mirrored `plus` stands for it.
     """
@@ -94,7 +104,8 @@ class ConditionPlan:
 
     Attributes:
         conditions: the ensemble, in the order of the solver.
-        labels: [condition] base, alpha+, alpha-, mach+, mach-, beta (or beta+, beta-), with "/2" for half steps.
+        labels: [condition] base, alpha+, alpha-, mach+, mach-, beta (or beta+, beta-), p, q+, q-, r, with "/2" for half
+            steps.
         point: [condition] index of the flight point.
         points: one PointPlan per flight point.
     """
@@ -105,7 +116,13 @@ class ConditionPlan:
     points: tuple[PointPlan, ...]
 
 
-def plan(points: list[AeroPoint], steps: DerivativeSteps, symmetric: bool = True, gamma: float = 1.4) -> ConditionPlan:
+def plan(
+    points: list[AeroPoint],
+    steps: DerivativeSteps,
+    symmetric: bool = True,
+    gamma: float = 1.4,
+    reference: ReferenceLengths | None = None,
+) -> ConditionPlan:
     """Expand flight points into the ensemble that gives their derivatives.
 
     Args:
@@ -114,11 +131,13 @@ def plan(points: list[AeroPoint], steps: DerivativeSteps, symmetric: bool = True
         symmetric: whether the vehicle is its own mirror image; then one side of sideslip is solved and mirrored
             (at a base sideslip of zero only).
         gamma: ratio of specific heats.
+        reference: chord, span and moment centre, SI, for steady rates; None leaves the damping derivatives out.
 
     Raises:
         InputError: a Mach number that is not positive and finite, or an angle that is not finite.
     """
-    ensemble = _Ensemble()
+    ensemble = _Ensemble(reference if steps.rate > 0.0 else None)
+    rates = dict.fromkeys(RATES, steps.rate) if ensemble.reference is not None else {}
     plans = []
     for number, point in enumerate(points):
         _check(point)
@@ -126,9 +145,10 @@ def plan(points: list[AeroPoint], steps: DerivativeSteps, symmetric: bool = True
         variations = []
         for scale, mark in ((1.0, ""), (0.5, "/2")) if steps.two_step_sizes else ((1.0, ""),):
             sizes = {"alpha": steps.alpha, "mach": steps.mach_fraction * point.mach, "beta": steps.beta}
+            sizes |= rates
             for quantity, full in sizes.items():
                 size = full * scale
-                mirrored = quantity == "beta" and symmetric and point.beta == 0.0
+                mirrored = quantity in MIRRORED and symmetric and point.beta == 0.0
                 plus = ensemble.add(number, point, f"{quantity}{'' if mirrored else '+'}{mark}", {quantity: size})
                 minus = None if mirrored else ensemble.add(number, point, f"{quantity}-{mark}", {quantity: -size})
                 variations.append(Variation(quantity, size, plus, minus))
@@ -139,22 +159,38 @@ def plan(points: list[AeroPoint], steps: DerivativeSteps, symmetric: bool = True
 class _Ensemble:
     """Collects conditions while a plan is made."""
 
-    def __init__(self) -> None:
-        self.rows: list[tuple[float, float, float]] = []
+    def __init__(self, reference: ReferenceLengths | None) -> None:
+        self.reference = reference
+        self.rows: list[list[float]] = []
         self.labels: list[str] = []
         self.owner: list[int] = []
 
     def add(self, number: int, point: AeroPoint, label: str, change: dict[str, float]) -> int:
         """Append flight point `number` changed by `change`; return the index of the condition."""
-        self.rows.append(tuple(float(getattr(point, key)) + change.get(key, 0.0) for key in ("mach", "alpha", "beta")))
+        at = [float(getattr(point, key)) + change.get(key, 0.0) for key in ("mach", "alpha", "beta")]
+        self.rows.append(at + [change.get(key, 0.0) for key in RATES])
         self.labels.append(label)
         self.owner.append(number)
         return len(self.rows) - 1
 
     def conditions(self, gamma: float) -> FlowConditions:
         """All of them as the solver wants them."""
-        table = np.array(self.rows, dtype=float).reshape(-1, 3)
-        return FlowConditions(*np.ascontiguousarray(table.T), gamma)
+        table = np.array(self.rows, dtype=float).reshape(-1, 6)
+        streams = FlowConditions(*np.ascontiguousarray(table[:, :3].T), gamma)
+        return streams if self.reference is None else turning(streams, table[:, 3:], self.reference)
+
+
+def turning(conditions: FlowConditions, reduced: np.ndarray, reference: ReferenceLengths) -> FlowConditions:
+    """The conditions with steady rates about the moment centre.
+
+    Args:
+        conditions: free streams.
+        reduced: [condition, (p, q, r)] reduced rates p b/2V, q c/2V, r b/2V.
+        reference: chord c, span b and moment centre, SI.
+    """
+    lengths = np.array([reference.span, reference.chord, reference.span])
+    rates = np.asarray(reduced, dtype=float) * 2.0 * conditions.mach[:, None] / lengths
+    return replace(conditions, rates=rates, center=tuple(float(v) for v in reference.moment_center))
 
 
 def product(machs: list[float], alphas: list[float], betas: list[float], gamma: float = 1.4) -> FlowConditions:

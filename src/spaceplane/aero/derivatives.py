@@ -26,16 +26,20 @@ from spaceplane.aero.axes import FORCES_AND_MOMENTS
 from spaceplane.aero.conditions import ConditionPlan, PointPlan, Variation
 from spaceplane.aero.integrate import mirrored, mirrored_name
 
-# Thesis Table 7.1; angles per rad, Mach per unit Mach.
+# Thesis Table 7.1, and damping; angles per rad, Mach per unit Mach, rates on p b/2V, q c/2V, r b/2V.
 STABILITY = {
     f"{coefficient}_{suffix}": (coefficient, quantity)
     for suffix, quantity, coefficients in (
         ("alpha", "alpha", ("CD", "CL", "Cm")),
         ("beta", "beta", ("CY", "Cl", "Cn")),
         ("M", "mach", ("CD", "CL", "Cm")),
+        ("p", "p", ("CY", "Cl", "Cn")),
+        ("q", "q", ("CL", "Cm")),
+        ("r", "r", ("CY", "Cl", "Cn")),
     )
     for coefficient in coefficients
 }
+UNITS = {"alpha": "rad", "beta": "rad", "deflection": "rad", "mach": "1", "p": "1", "q": "1", "r": "1"}
 CONVERGED = "converged"
 _SEVERITY = (CONVERGED, "oscillating", "failed")
 
@@ -47,7 +51,7 @@ class Slope:
     Attributes:
         value: [part] derivative, total first.
         error: error estimate of the total.
-        step: full step, rad or Mach number.
+        step: full step, rad, Mach number or reduced rate.
         status: worst verdict of the conditions that it rests on.
     """
 
@@ -67,15 +71,17 @@ def differentiate(coefficients: xr.Dataset, plan: ConditionPlan) -> xr.Dataset:
     Returns:
         Dataset with dims (point, part): per derivative `<name>` (point, part), and `<name>_error`, `<name>_step`,
         `<name>_status` (point). The status is the worst verdict of the conditions used; a derivative with a failed
-        condition is NaN.
+        condition is NaN. Derivatives by quantities that the plan does not vary are left out.
     """
+    varied = {v.quantity for point in plan.points for v in point.variations}
+    names = {name: rule for name, rule in STABILITY.items() if rule[1] in varied}
     by_mirror = any(v.minus is None for point in plan.points for v in point.variations)
     flipped = mirrored(coefficients) if by_mirror else coefficients
     slopes = {
         name: [_central(coefficients, flipped, coefficient, point, quantity) for point in plan.points]
-        for name, (coefficient, quantity) in STABILITY.items()
+        for name, (coefficient, quantity) in names.items()
     }
-    return _dataset(slopes, coefficients, {name: quantity for name, (_, quantity) in STABILITY.items()})
+    return _dataset(slopes, coefficients, {name: quantity for name, (_, quantity) in names.items()})
 
 
 def worst(verdicts: Sequence[str]) -> str:
@@ -173,9 +179,9 @@ def _dataset(slopes: Mapping[str, list[Slope]], source: xr.Dataset, quantity: Ma
     variables = {}
     for name, values in slopes.items():
         coefficient = name.split("_")[0]
-        per_mach = quantity[name] == "mach"
         shared = {"reference": source[coefficient].attrs["reference"], "axes": source[coefficient].attrs["axes"]}
-        units, step_units = ("1", "1") if per_mach else ("1/rad", "rad")
+        step_units = UNITS[quantity[name]]
+        units = "1" if step_units == "1" else f"1/{step_units}"
         positive = f"{source[coefficient].attrs['positive']} with growing {quantity[name]}"
         bad = [v.status == "failed" for v in values]
         error = np.where(bad, np.nan, [v.error for v in values])

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
+import numpy as np
 import xarray as xr
 
 from spaceplane.aero.conditions import product
 from spaceplane.aero.integrate import COEFFICIENTS, PRESSURES, TOTAL, Reference, integrate
+from spaceplane.errors import InputError
 from spaceplane.flow.settings import FlowSettings
 from spaceplane.flow.solution import Solution
 from spaceplane.flow.solve import solve
@@ -18,6 +20,9 @@ from spaceplane.mesh.settings import MeshSettings
 from spaceplane.plain import degrees, finite
 from spaceplane.progress import Progress
 from spaceplane.vehicle.surface import Surface
+
+FASTEST_POINT = 0.5
+"""Speed by rotation, on the flight speed, that a point of the body may have: far beyond any vehicle's manoeuvre."""
 
 
 @dataclass(frozen=True)
@@ -46,6 +51,7 @@ def run_flow(
     mesh_settings: MeshSettings,
     flow_settings: FlowSettings,
     progress: Progress | None = None,
+    rates: tuple[float, float, float] = (0.0, 0.0, 0.0),
 ) -> FlowCase:
     """Mesh a body and solve every combination of Mach number, angle of attack and sideslip in one ensemble.
 
@@ -58,11 +64,21 @@ def run_flow(
         mesh_settings: how to mesh.
         flow_settings: how to solve.
         progress: passed on to the solver.
+        rates: steady roll, pitch and yaw rate about the moment centre in every condition, rad/s on the speed of sound
+            in m/s, 1/m.
 
     Raises:
-        InputError: a bad condition or body.
+        InputError: a bad condition or body, or rates that move some point of the body at more than half the flight
+            speed.
     """
     conditions = product(list(machs), list(alphas), list(betas))
+    conditions = replace(conditions, rates=np.tile(rates, (len(conditions), 1)), center=reference.moment_center)
+    arm = np.linalg.norm(body.points - np.asarray(reference.moment_center), axis=1).max()
+    share = float(np.linalg.norm(rates) * arm / conditions.mach.min())
+    if share > FASTEST_POINT:
+        raise InputError(
+            f"rates: a point of the body would move at {share:.2g} of the flight speed, at most {FASTEST_POINT:g}"
+        )
     if progress:
         progress("mesh", 0, 1, "")
     mesh = generate(body, mesh_settings, progress)
@@ -74,9 +90,9 @@ def run_flow(
 def records(solution: Solution, coefficients: xr.Dataset) -> list[dict]:
     """One dict per condition: conditions, coefficients, and how they converged.
 
-    Keys: mach, alpha_deg, beta_deg, COEFFICIENTS, PRESSURES, converged, verdict, residual_drop, iterations, seconds,
-    cells, reason. `seconds` is the wall time of the whole ensemble divided by its conditions. Values of a
-    failed condition are None.
+    Keys: mach, alpha_deg, beta_deg, p_hat, q_hat, r_hat (reduced rates), COEFFICIENTS, PRESSURES, converged,
+    verdict, residual_drop, iterations, seconds, cells, reason. `seconds` is the wall time of the whole ensemble
+    divided by its conditions. Values of a failed condition are None.
     """
     c = solution.conditions
     seconds = total_seconds(solution) / max(len(c), 1)
@@ -89,6 +105,7 @@ def records(solution: Solution, coefficients: xr.Dataset) -> list[dict]:
                 "mach": float(c.mach[i]),
                 "alpha_deg": degrees(c.alpha[i]),
                 "beta_deg": degrees(c.beta[i]),
+                **{name: float(coefficients[name].values[i]) for name in ("p_hat", "q_hat", "r_hat")},
                 **values,
                 "converged": record.good,
                 "verdict": record.verdict,

@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from spaceplane.aero.axes import FORCES_AND_MOMENTS, geometry_to_body, wind_axes
-from spaceplane.flow.solution import ConvergenceRecord, Solution
+from spaceplane.flow.solution import ConvergenceRecord, FlowConditions, Solution
 from spaceplane.mesh.mesh import Mesh
 
 TOTAL = "total"
@@ -64,7 +64,8 @@ def integrate(solution: Solution, reference: Reference) -> xr.Dataset:
         COEFFICIENTS and PRESSURES has the attributes units, axes, positive and reference; `<name>_spread`
         (condition) of WITH_SPREAD is half the peak-to-peak in the solver's final window, for moments the estimate that
         the forces' wandering acts at the wall's root-mean-square distance from the moment centre. Coordinates along
-        `condition`: mach, alpha, beta (rad), verdict, reason. A condition that failed has NaN everywhere.
+        `condition`: mach, alpha, beta (rad), reduced rates p_hat, q_hat, r_hat, verdict, reason. A condition that
+        failed has NaN everywhere.
     """
     mesh, conditions = solution.mesh, solution.conditions
     force, moment, forebody = _loads(solution, np.asarray(reference.moment_center, dtype=float))
@@ -182,6 +183,7 @@ def _dataset(solution: Solution, reference: Reference, values: dict, parts: tupl
         "mach": ("condition", np.asarray(conditions.mach, dtype=float), {"units": "1"}),
         "alpha": ("condition", np.asarray(conditions.alpha, dtype=float), angle | {"positive": "nose up"}),
         "beta": ("condition", np.asarray(conditions.beta, dtype=float), angle | {"positive": "wind from the right"}),
+        **_reduced_rates(conditions, reference),
         "verdict": ("condition", np.array([r.verdict for r in records], dtype=str)),
         "reason": ("condition", np.array([r.reason for r in records], dtype=str)),
     }
@@ -195,14 +197,26 @@ def _dataset(solution: Solution, reference: Reference, values: dict, parts: tupl
     return xr.Dataset(variables, coordinates, attributes)
 
 
+def _reduced_rates(conditions: FlowConditions, reference: Reference) -> dict[str, tuple]:
+    """Coordinates p_hat = p b/2V, q_hat = q c/2V and r_hat = r b/2V of each condition."""
+    lengths = np.array([reference.span, reference.chord, reference.span])
+    rates = np.zeros((len(conditions), 3)) if conditions.rates is None else np.asarray(conditions.rates, dtype=float)
+    reduced = rates * lengths / (2.0 * np.asarray(conditions.mach, dtype=float)[:, None])
+    scale = ("p b/2V", "q c/2V", "r b/2V")
+    return {
+        name: ("condition", reduced[:, k], {"units": "1", "long_name": f"reduced rate {scale[k]}"})
+        for k, name in enumerate(("p_hat", "q_hat", "r_hat"))
+    }
+
+
 def mirrored(coefficients: xr.Dataset) -> xr.Dataset:
     """The coefficients of the mirrored vehicle in the mirrored wind: left and right parts swapped, CY, Cl, Cn reversed.
 
-    For a vehicle that is its own mirror image this is its answer to the opposite sideslip.
+    For a vehicle that is its own mirror image this is its answer to the opposite sideslip, roll and yaw rate.
     """
     names = [mirrored_name(str(part)) for part in coefficients.part.values]
     result = coefficients.assign_coords(part=names).sel(part=coefficients.part.values)
-    result = result.assign_coords(beta=-coefficients.beta)
+    result = result.assign_coords({name: -coefficients[name] for name in ("beta", "p_hat", "r_hat")})
     return result.assign({name: result[name].copy(data=-result[name].values) for name in LATERAL})
 
 

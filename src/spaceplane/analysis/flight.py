@@ -9,7 +9,7 @@ import xarray as xr
 
 from spaceplane.aero.integrate import TOTAL
 from spaceplane.analysis.settings import AnalyseSettings
-from spaceplane.dynamics.derivatives import COEFFICIENTS, STATIC, Derivatives
+from spaceplane.dynamics.derivatives import COEFFICIENTS, DAMPING, STATIC, Derivatives
 from spaceplane.dynamics.flightpoint import AngularRates, FlightPoint, equilibrium_rates
 from spaceplane.dynamics.linearise import linearise
 from spaceplane.dynamics.modes import Mode, identify
@@ -79,9 +79,11 @@ def fly(
         reason = f"no linear model: {', '.join(missing)} rest on a condition that failed"
         return PointAnalysis(point, validity, rates, None, (), (), reason)
     static = {name: values[name] for name in STATIC}
-    controls = {n: v for n, v in values.items() if n not in STATIC and n.split("_")[0] in COEFFICIENTS}
-    known = {n: v for n, v in controls.items() if math.isfinite(v)}
-    system = linearise(point, vehicle.mass, vehicle.reference, Derivatives(**static, controls=known), settings.form)
+    known = {n: v for n, v in values.items() if n not in STATIC and math.isfinite(v)}
+    damping = {n: v for n, v in known.items() if n in DAMPING}
+    controls = {n: v for n, v in known.items() if n not in DAMPING and n.split("_")[0] in COEFFICIENTS}
+    all_known = Derivatives(**static, **damping, controls=controls)
+    system = linearise(point, vehicle.mass, vehicle.reference, all_known, settings.form)
     modes = identify(system)
     weight = vehicle.mass.mass * STANDARD_GRAVITY
     n_alpha = load_factor_slope(static["CL_alpha"], point.dynamic_pressure, vehicle.reference.area, weight)

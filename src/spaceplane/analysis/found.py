@@ -12,7 +12,7 @@ from spaceplane.aero.database import AeroDatabase
 from spaceplane.aero.derivatives import CONVERGED
 from spaceplane.analysis.flight import PointAnalysis
 from spaceplane.analysis.settings import AnalyseSettings
-from spaceplane.dynamics.derivatives import STATIC
+from spaceplane.dynamics.derivatives import DAMPING, STATIC
 from spaceplane.vehicle.presets import Vehicle
 
 
@@ -79,7 +79,8 @@ def remarks(
     for index, point in enumerate(found):
         name = point.point.name
         lines += [f"{name}: {note}" for note in point.validity.notes]
-        shaky = [n for n in STATIC if str(derivatives[f"{n}_status"].values[index]) != CONVERGED]
+        used = [n for n in (*STATIC, *DAMPING) if f"{n}_status" in derivatives]
+        shaky = [n for n in used if str(derivatives[f"{n}_status"].values[index]) != CONVERGED]
         if point.reason:
             lines.append(f"{name}: {point.reason}")
         elif shaky:

@@ -13,13 +13,13 @@ from spaceplane.commands.arguments import (
     angles,
     existing_file,
     mach_numbers,
+    number,
     numbers,
     positive,
     writable_file,
     write_json,
 )
 from spaceplane.commands.progress import progress_bar
-from spaceplane.errors import InputError
 from spaceplane.files import renamed_when_done
 
 if TYPE_CHECKING:
@@ -46,8 +46,12 @@ def flow(
     ] = "0",
     rates: Annotated[
         str,
-        typer.Option("--rates", metavar="p,q,r", help="Body rates, rad/s; this version solves 0,0,0 only."),
+        typer.Option("--rates", metavar="p,q,r", help="Steady roll, pitch and yaw rate about the moment point, rad/s."),
     ] = "0,0,0",
+    altitude: Annotated[
+        str,
+        typer.Option("--altitude", metavar="M", help="Altitude whose speed of sound turns rates into Mach numbers."),
+    ] = "0",
     cell: options.Cell = None,
     cells: options.Cells = None,
     domain: Annotated[
@@ -66,8 +70,10 @@ def flow(
     Exit code 0 when every condition converged, 1 when one did not, 2 for bad input.
     """
     machs, alphas, betas = mach_numbers(mach), angles("--alpha", alpha), angles("--beta", beta)
-    if any(numbers("--rates", rates, "rad/s", 3)):
-        raise InputError(f"--rates: {rates}, this version allows 0,0,0 only (the body does not turn)")
+    from spaceplane.environment.atmosphere import us1976
+
+    sound = us1976(number("--altitude", altitude, "m")).speed_of_sound
+    turning = tuple(rate / sound for rate in numbers("--rates", rates, "rad/s", 3))
     lengths = {
         "area": positive("--area", area, "m2"),
         "chord": positive("--length", length, "m"),
@@ -95,7 +101,7 @@ def flow(
 
     with progress_bar() as tell:
         tell("mesh", 0, 1, "")
-        case = run_flow(surface, machs, alphas, betas, reference, mesh, settings, tell)
+        case = run_flow(surface, machs, alphas, betas, reference, mesh, settings, tell, turning)
     _write(case, surface, vtu, vtp)
     write_json(case.records, json_file)
     for warning in case.mesh.record.get("warnings") or ():

@@ -2,8 +2,8 @@
 
 The state keeps the air's velocity relative to the turning centre, which is the free stream's everywhere far away. Faces
 move at omega x r: a face flux is taken in axes that move with the face and carried back, and turning the axes adds
-rho omega x (u - u_inf) to the momentum of a volume. M. Vinokur, J. Comput. Phys. 81 (1989) 1-52, sec. 2, on moving
-volumes; C. Y. Soo, AIAA J. 33 (1995) for damping derivatives from steady rotation.
+rho omega x (u - u_inf) to the momentum of a volume. M. Vinokur, J. Comput. Phys. 81 (1989) 1-52, on moving volumes;
+A. C. Limache, E. M. Cliff, J. Aircraft 37 (2000) 676-683, on derivatives from steady rotation.
 """
 
 from __future__ import annotations

@@ -31,7 +31,7 @@ FLIGHT_ROWS = (
 )
 RATES = (("Roll rate", "p_rads"), ("Pitch rate", "q_rads"), ("Yaw rate", "r_rads"))
 VARIABLE_GROUPS = (("alpha", "Angle of attack"), ("beta", "Sideslip"), ("M", "Mach number"), ("mach", "Mach number"))
-UNITS = {"1/rad": "per rad", "1": "per unit Mach", "": "per unit Mach"}
+PER = {"M": "per unit Mach", "mach": "per unit Mach", "p": "on p b/2V", "q": "on q c/2V", "r": "on r b/2V"}
 PRECISIONS = {"single": "fp32", "double": "fp64"}
 MESH_ROWS = (
     ("Cells", "cells"),
@@ -202,7 +202,7 @@ def _derivative_row(name: str, points: list[dict]) -> dict:
     return {
         "symbol": Markup(symbol(name)),
         "what": meaning(name),
-        "unit": UNITS.get(first.get("unit"), first.get("unit") or ""),
+        "unit": PER.get(split_derivative(name).variable, "per rad"),
         "title": f"{name}{step}",
         "cells": cells,
     }

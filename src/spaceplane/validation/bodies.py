@@ -120,6 +120,68 @@ def hb2(diameter: float = 1.0, segments: int = 96, arc_points: int = 24) -> Surf
     return revolve(profile * diameter, segments, base_from=len(profile) - 2)
 
 
+def basic_finner(segments: int = 96) -> Surface:
+    """The Basic Finner: a cone-cylinder of 10 calibres with four square fins, one calibre being 1 m.
+
+    10 deg cone, cylinder, flat base; fins of one calibre in chord and exposed span in the planes y = 0 and z = 0, flush
+    with the base, wedges from a sharp leading edge to a thickness of 0.08 at the trailing edge.
+
+    Args:
+        segments: facets around the axis.
+
+    Returns:
+        A surface with the parts `forebody`, `base` and `fins`.
+
+    Source: Dupuis and Hathaway, DREV-TM-9703 (1997), figure 1.
+    """
+    nose, radius = 0.5 / math.tan(math.radians(10.0)), 0.5 * _equal_area_factor(segments)
+    body = revolve(np.array([(0.0, 0.0), (nose, radius), (10.0, radius), (10.0, 0.0)]), segments, base_from=2)
+    # Leading edge, upper and lower trailing edge at the root (inside the body) and at the tip.
+    section = np.array([(9.0, 0.0), (10.0, 0.04), (10.0, -0.04)])
+    points = np.array([(x, span, z) for span in (0.3, 1.5) for x, z in section])
+    triangles = np.array([(0, 2, 1), (3, 4, 5), (0, 1, 4), (0, 4, 3), (0, 3, 5), (0, 5, 2), (1, 2, 5), (1, 5, 4)])
+    quarter = np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0]])
+    fins = [points @ np.linalg.matrix_power(quarter, k).T for k in range(4)]
+    return union(body, [Surface(fin, triangles, np.zeros(len(triangles), np.int32), ("fins",)) for fin in fins])
+
+
+def union(body: Surface, others: list[Surface]) -> Surface:
+    """Closed surface of a body and others that stick out of it; equal part names are one part.
+
+    Raises:
+        InputError: a surface that is not closed.
+    """
+    import manifold3d
+
+    names = tuple(dict.fromkeys(name for surface in (body, *others) for name in surface.part_names))
+    solids = [_tagged(surface, names) for surface in (body, *others)]
+    mesh = manifold3d.Manifold.batch_boolean(solids, manifold3d.OpType.Add).to_mesh64()
+    points, triangles = np.array(mesh.vert_properties[:, :3]), mesh.tri_verts.astype(np.int64)
+    if len(mesh.merge_from_vert):
+        target = np.arange(len(points))
+        target[mesh.merge_from_vert] = mesh.merge_to_vert
+        triangles = target[triangles]
+    used, compact = np.unique(triangles, return_inverse=True)
+    return Surface(points[used], compact.reshape(-1, 3).astype(np.int64), np.array(mesh.face_id, dtype=np.int32), names)
+
+
+def _tagged(surface: Surface, names: tuple[str, ...]):
+    """manifold3d solid whose triangles carry the place of their part in `names`."""
+    import manifold3d
+
+    number = np.array([names.index(name) for name in surface.part_names])
+    solid = manifold3d.Manifold(
+        manifold3d.Mesh64(
+            np.ascontiguousarray(surface.points),
+            np.ascontiguousarray(surface.triangles.astype(np.uint64)),
+            face_id=number[surface.part].astype(np.uint64),
+        )
+    )
+    if solid.status() != manifold3d.Error.NoError:
+        raise InputError(f"{surface.part_names}: not a closed surface ({solid.status().name})")
+    return solid
+
+
 def _exact_cosine(segments: int) -> np.ndarray:
     """[segments] cosine of equally spaced angles, symmetric to the last bit about both axes."""
     quarter = np.sin(0.5 * math.pi * np.arange(segments // 4 + 1) / (segments // 4))

@@ -15,6 +15,7 @@ CASES: dict[str, str] = {
     "cones": "spaceplane.validation.cones",
     "sphere": "spaceplane.validation.sphere",
     "hb2": "spaceplane.validation.hb2",
+    "finner": "spaceplane.validation.finner",
     "horus": "spaceplane.validation.horus",
     "dynamics": "spaceplane.validation.dynamics",
 }
