@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from spaceplane.aero.exact.stagnation import stagnation_cp
 from spaceplane.flow.freestream import direction
-from spaceplane.validation.blunt import stagnation_cp
 from spaceplane.vehicle.properties import ReferenceLengths
 from spaceplane.vehicle.surface import Surface
 
