@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Protocol
 
 import numpy as np
@@ -127,6 +128,7 @@ def coefficients(
         (condition) of WITH_SPREAD. Coordinates along `condition`: mach, alpha, beta (rad), verdict, reason. A
         condition that failed has NaN everywhere.
     """
+    pieces, cp = _sorted(pieces, cp)
     force, moment, forebody = _loads(pieces, cp, np.asarray(reference.moment_center, dtype=float))
     force = force / reference.area
     forebody = forebody / reference.area
@@ -155,10 +157,8 @@ def _loads(pieces: WallPieces, cp: np.ndarray, center: np.ndarray) -> tuple[np.n
     arm_area = np.cross(pieces.center - center, pieces.area)
     upstream = np.where(pieces.area[:, 0] > 0.0, pieces.area[:, 0], 0.0)
     weights = np.column_stack([pieces.area, arm_area, upstream])
-    parts = len(pieces.part_names)
-    sums = np.zeros((cp.shape[1], parts + 1, weights.shape[1]))
-    for part in range(parts):
-        chosen = pieces.part == part
+    sums = np.zeros((cp.shape[1], len(pieces.part_names) + 1, weights.shape[1]))
+    for part, chosen in enumerate(_runs(pieces)):
         sums[:, part + 1] = cp[chosen].T @ weights[chosen]
     sums[:, 0] = sums[:, 1:].sum(axis=1)
     return sums[..., :3], sums[..., 3:6], sums[..., 6]
@@ -169,11 +169,25 @@ def _extrema(pieces: WallPieces, cp: np.ndarray) -> tuple[np.ndarray, np.ndarray
     high = np.full((cp.shape[1], len(pieces.part_names) + 1), np.nan)
     low = high.copy()
     high[:, 0], low[:, 0] = cp.max(axis=0), cp.min(axis=0)
-    for part in range(len(pieces.part_names)):
-        own = cp[pieces.part == part]
+    for part, chosen in enumerate(_runs(pieces)):
+        own = cp[chosen]
         if len(own):
             high[:, part + 1], low[:, part + 1] = own.max(axis=0), own.min(axis=0)
     return high, low
+
+
+def _runs(pieces: WallPieces) -> list[slice]:
+    """[part] where its pieces are, which follow each other."""
+    bounds = np.searchsorted(pieces.part, np.arange(len(pieces.part_names) + 1))
+    return [slice(*pair) for pair in pairwise(bounds)]
+
+
+def _sorted(pieces: WallPieces, cp: np.ndarray) -> tuple[WallPieces, np.ndarray]:
+    """Pieces and their pressures in the order of the parts, as they are where they come so."""
+    if (np.diff(pieces.part) >= 0).all():
+        return pieces, cp
+    order = np.argsort(pieces.part, kind="stable")
+    return WallPieces(pieces.area[order], pieces.center[order], pieces.part[order], pieces.part_names), cp[order]
 
 
 def wetted_area(mesh: Mesh) -> float:

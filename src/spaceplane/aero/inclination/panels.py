@@ -19,10 +19,10 @@ class Panels:
     """Flat panels that carry one pressure each.
 
     Attributes:
-        normal: [panel, xyz] outward unit normal.
+        normal: [panel, xyz] outward unit normal; 0 for a triangle without area.
         area: [panel] m2.
         center: [panel, xyz] centroid, m.
-        triangle: [panel] triangle of the surface that it is cut from.
+        triangle: [panel] triangle of the surface that it is cut from; panels of one part follow each other.
         surface: the surface.
     """
 
@@ -52,26 +52,34 @@ def panels_of(surface: Surface, longest: float) -> Panels:
         surface: closed surface.
         longest: longest edge of a panel, m.
     """
-    corners, source = surface.corners.copy(), np.arange(len(surface.triangles))
-    while True:
-        edge = np.roll(corners, -1, axis=1) - corners  # from corner k to k + 1
-        length = np.einsum("tkx,tkx->tk", edge, edge)
-        long = np.flatnonzero(length.max(axis=1) > longest**2)
-        if not len(long):
-            break
-        k = length[long].argmax(axis=1)
-        a, b, c = (corners[long, (k + shift) % 3] for shift in range(3))
-        middle = 0.5 * (a + b)
-        corners[long] = np.stack([a, middle, c], axis=1)
-        corners = np.concatenate([corners, np.stack([middle, b, c], axis=1)])
-        source = np.concatenate([source, source[long]])
-    # The normals are those of the whole triangles, so that pieces of one share it to the last bit.
+    pieces, source, share = _cut(surface.corners, longest)
+    order = np.argsort(surface.part[source], kind="stable")
+    source = source[order]
+    # Normals are those of the whole triangles and areas their equal shares, so that no digit is lost by cutting.
     vector = surface.area_vectors
     size = np.linalg.norm(vector, axis=1)
-    normal = np.divide(vector, size[:, None], out=np.zeros_like(vector), where=size[:, None] > 0.0)
-    half = 0.5 * np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    area = np.einsum("px,px->p", half, normal[source])
-    return Panels(normal[source], area, corners.mean(axis=1), source, surface)
+    normal = vector / np.maximum(size, 1e-300)[:, None]
+    return Panels(normal[source], size[source] * share[order], pieces.mean(axis=1)[order], source, surface)
+
+
+def _cut(corners: np.ndarray, longest: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """[piece, corner, xyz] corners, triangle that the piece is of, and its share of the triangle's area."""
+    source, share = np.arange(len(corners)), np.ones(len(corners))
+    done = []
+    while True:
+        a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
+        length = np.stack([((b - a) ** 2).sum(axis=1), ((c - b) ** 2).sum(axis=1), ((a - c) ** 2).sum(axis=1)])
+        long = length.max(axis=0) > longest**2
+        short = ~long
+        done.append((corners[short], source[short], share[short]))
+        if not long.any():
+            break
+        rows, k = np.flatnonzero(long), length[:, long].argmax(axis=0)
+        a, b, c = (corners[rows, (k + shift) % 3] for shift in range(3))
+        middle = 0.5 * (a + b)
+        corners = np.concatenate([np.stack([a, middle, c], axis=1), np.stack([middle, b, c], axis=1)])
+        source, share = np.tile(source[rows], 2), 0.5 * np.tile(share[rows], 2)
+    return tuple(np.concatenate(column) for column in zip(*done, strict=True))
 
 
 def blunt_triangles(surface: Surface, radius: float) -> np.ndarray:

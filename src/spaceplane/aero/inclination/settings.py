@@ -38,7 +38,7 @@ class InclinationSettings:
     blunt_radius: float = 0.03
     leeward: str = "prandtl_meyer"
     shadow: bool = True
-    panel: float = 0.01
+    panel: float = 0.02
 
     def __post_init__(self) -> None:
         for name in (self.windward, *self.by_part.values(), *([] if self.blunt is None else [self.blunt])):

@@ -35,7 +35,7 @@ def hidden(panels: Panels, wind: np.ndarray) -> np.ndarray:
     if not len(facing):
         return result
     points = surface.points @ frame
-    size = float(np.ptp(surface.points, axis=0).max())
+    size = float(np.ptp(surface.bounds, axis=0).max())
     result[facing] = _behind(panels.center[facing] @ frame, points, surface.triangles[front], GAP * size)
     return result
 
@@ -66,30 +66,38 @@ def _behind(center, points, triangles, gap):
         first[b + 1] += first[b]
     free = first[:-1].copy()
     order = np.empty(count, dtype=np.int64)
+    u, v, w = np.empty(count), np.empty(count), np.empty(count)
     for i in range(count):
-        order[free[own[i]]] = i
+        k = free[own[i]]
         free[own[i]] += 1
-    found = np.zeros(count, dtype=np.bool_)
+        order[k] = i
+        u[k], v[k], w[k] = center[i, 0], center[i, 1], center[i, 2] - gap
+    behind = np.zeros(count, dtype=np.bool_)
     for t in range(len(triangles)):
-        au, av, aw = points[triangles[t, 0]]
-        bu, bv, bw = points[triangles[t, 1]]
-        cu, cv, cw = points[triangles[t, 2]]
-        double = (bu - au) * (cv - av) - (bv - av) * (cu - au)
+        a, b, c = triangles[t, 0], triangles[t, 1], triangles[t, 2]
+        au, av, aw = points[a, 0], points[a, 1], points[a, 2]
+        bu, bv, bw = points[b, 0] - au, points[b, 1] - av, points[b, 2] - aw
+        cu, cv, cw = points[c, 0] - au, points[c, 1] - av, points[c, 2] - aw
+        double = bu * cv - bv * cu
         if double == 0.0:
             continue
-        left = max(int(np.floor((min(au, bu, cu) - low_u) / box)), 0)
-        right = min(int(np.floor((max(au, bu, cu) - low_u) / box)), columns - 1)
-        bottom = max(int(np.floor((min(av, bv, cv) - low_v) / box)), 0)
-        top = min(int(np.floor((max(av, bv, cv) - low_v) / box)), rows - 1)
-        nearest = min(aw, bw, cw)
+        left = max(int(np.floor((au + min(0.0, bu, cu) - low_u) / box)), 0)
+        right = min(int(np.floor((au + max(0.0, bu, cu) - low_u) / box)), columns - 1)
+        bottom = max(int(np.floor((av + min(0.0, bv, cv) - low_v) / box)), 0)
+        top = min(int(np.floor((av + max(0.0, bv, cv) - low_v) / box)), rows - 1)
+        if left > right:
+            continue
+        nearest = aw + min(0.0, bw, cw)
         for row in range(bottom, top + 1):
-            for place in range(first[row * columns + left], first[row * columns + right + 1] if left <= right else 0):
-                i = order[place]
-                u, v, w = center[i]
-                if found[i] or w - gap <= nearest:
+            for k in range(first[row * columns + left], first[row * columns + right + 1]):
+                if behind[k] or w[k] <= nearest:
                     continue
-                share_b = ((u - au) * (cv - av) - (v - av) * (cu - au)) / double
-                share_c = ((bu - au) * (v - av) - (bv - av) * (u - au)) / double
+                du, dv = u[k] - au, v[k] - av
+                share_b = (du * cv - dv * cu) / double
+                share_c = (bu * dv - bv * du) / double
                 if share_b >= 0.0 and share_c >= 0.0 and share_b + share_c <= 1.0:
-                    found[i] = w - gap > aw + share_b * (bw - aw) + share_c * (cw - aw)
-    return found
+                    behind[k] = w[k] > aw + share_b * bw + share_c * cw
+    result = np.zeros(count, dtype=np.bool_)
+    for k in range(count):
+        result[order[k]] = behind[k]
+    return result
