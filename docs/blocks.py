@@ -40,7 +40,7 @@ def settings_table(record: type) -> str:
     """Fields of a settings dataclass with default and the description from its docstring."""
     described: dict[str, str] = {}
     name = ""
-    for line in (record.__doc__ or "").split("Attributes:")[-1].splitlines():
+    for line in (record.__doc__ or "").split("Attributes:")[-1].split("Raises:")[0].splitlines():
         text = line.strip()
         head, colon, rest = text.partition(":")
         if colon and head in {item.name for item in fields(record)}:

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from spaceplane.aero.exact.conical import taylor_maccoll
 from spaceplane.flow.settings import FlowSettings
 from spaceplane.flow.solution import FlowConditions
 from spaceplane.flow.solve import solve
@@ -11,7 +12,6 @@ from spaceplane.mesh.generate import generate
 from spaceplane.mesh.settings import MeshSettings
 from spaceplane.validation import bodies
 from spaceplane.validation.cones import surface_cp
-from spaceplane.validation.conical import taylor_maccoll
 
 half_angle = math.radians(20.0)
 mesh = generate(bodies.cone(half_angle), MeshSettings(wall_cell=0.04))

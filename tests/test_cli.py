@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import json
+import math
 import os
 import subprocess
 import sys
@@ -488,6 +489,43 @@ def test_a_wall_thinner_than_two_cells_is_a_warning_with_the_place(capfd, tmp_pa
 
     assert pyvista.read(tmp_path / "w.vtp").n_cells > 0
     assert pyvista.read(tmp_path / "w.vtu").n_cells == rows[0]["cells"]
+
+
+def test_local_inclination_from_the_command_line(capfd, tmp_path):
+    """The records of the Euler solver, without a mesh; a wedge of 5.7 deg at Mach 3 in the plane."""
+    from spaceplane.aero.exact.oblique import weak_shock_cp
+
+    body, record = wedge(tmp_path / "w.stl"), tmp_path / "w.json"
+    grid = ("--mach", "3,8", "--alpha", "0,4", *FLOW)
+    code, out, err = run(capfd, "flow", body, *grid, "--method", "tangent-wedge", "--json", record)
+    assert (code, err) == (0, "") and out.count("inclination") == 4
+    rows = json.loads(record.read_text())
+    assert [(r["mach"], r["alpha_deg"]) for r in rows] == [(3, 0), (3, 4), (8, 0), (8, 4)]
+    assert all(r["converged"] and r["cells"] == 0 for r in rows)
+    assert rows[0]["Cp_max"] == pytest.approx(float(weak_shock_cp(3.0, math.atan(0.1))), rel=1e-4)
+    assert rows[1]["CL"] > 0.05 > abs(rows[0]["CL"])
+    code, out, _ = run(capfd, "flow", body, *grid, "--method", "newtonian", "--json", "-")
+    assert code == 0 and json.loads(out)[0].keys() == rows[0].keys()
+    assert json.loads(out)[0]["Cp_min"] == 0.0
+
+
+@pytest.mark.parametrize(
+    ("options", "naming"),
+    [
+        (("--method", "newtonain"), "did you mean 'newtonian'"),
+        (("--method", "newtonian", "--mach", "1.5,3"), "mach = 1.5"),
+        (("--method", "newtonian", "--cell", "0.1"), "--cell: 0.1"),
+        (("--method", "tangent", "--cells", "1000"), "--cells: 1000"),
+        (("--method", "tangent", "--domain", "0,0,0,1,1,1"), "--domain"),
+        (("--method", "tangent", "--vtu", "a.vtu"), "--vtu"),
+        (("--method", "tangent", "--vtp", "a.vtp"), "--vtp"),
+        (("--method", "tangent", "--precision", "fp64"), "--precision"),
+    ],
+)
+def test_what_local_inclination_refuses(capfd, tmp_path, monkeypatch, options, naming):
+    monkeypatch.chdir(tmp_path)
+    mach = () if "--mach" in options else ("--mach", 3)
+    refused(capfd, "flow", wedge(tmp_path / "w.stl"), *mach, *FLOW, *options, naming=naming)
 
 
 def test_an_unconverged_condition_is_exit_code_1(capfd, tmp_path, monkeypatch):

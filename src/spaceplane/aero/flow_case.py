@@ -94,29 +94,35 @@ def records(solution: Solution, coefficients: xr.Dataset) -> list[dict]:
     verdict, residual_drop, iterations, seconds, cells, reason. `seconds` is the wall time of the whole ensemble
     divided by its conditions. Values of a failed condition are None.
     """
-    c = solution.conditions
-    seconds = total_seconds(solution) / max(len(c), 1)
-    totals = coefficients.sel(part=TOTAL)
-    result = []
-    for i, record in enumerate(solution.records):
-        values = {name: finite(totals[name].values[i]) for name in (*COEFFICIENTS, *PRESSURES)}
-        result.append(
-            {
-                "mach": float(c.mach[i]),
-                "alpha_deg": degrees(c.alpha[i]),
-                "beta_deg": degrees(c.beta[i]),
-                **{name: float(coefficients[name].values[i]) for name in ("p_hat", "q_hat", "r_hat")},
-                **values,
-                "converged": record.good,
-                "verdict": record.verdict,
-                "residual_drop": finite(record.residual_drop),
-                "iterations": int(record.iterations),
-                "seconds": round(seconds, 3),
-                "cells": solution.mesh.cells,
-                "reason": record.reason,
-            }
+    seconds = total_seconds(solution) / max(len(solution.conditions), 1)
+    return [
+        condition_record(
+            coefficients,
+            i,
+            converged=record.good,
+            verdict=record.verdict,
+            residual_drop=finite(record.residual_drop),
+            iterations=int(record.iterations),
+            seconds=round(seconds, 3),
+            cells=solution.mesh.cells,
+            reason=record.reason,
         )
-    return result
+        for i, record in enumerate(solution.records)
+    ]
+
+
+def condition_record(coefficients: xr.Dataset, index: int, **found: object) -> dict:
+    """Free stream and total coefficients of one condition, then what else was found, ready for JSON."""
+    one = coefficients.isel(condition=index)
+    totals = one.sel(part=TOTAL)
+    return {
+        "mach": float(one.mach),
+        "alpha_deg": degrees(float(one.alpha)),
+        "beta_deg": degrees(float(one.beta)),
+        **{name: float(one[name]) for name in ("p_hat", "q_hat", "r_hat")},
+        **{name: finite(totals[name].item()) for name in (*COEFFICIENTS, *PRESSURES)},
+        **found,
+    }
 
 
 def total_seconds(solution: Solution) -> float:

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
 from typing import Protocol
 
 import numpy as np
@@ -49,6 +52,36 @@ class Reference(Protocol):
     moment_center: tuple[float, float, float]
 
 
+@dataclass(frozen=True)
+class WallPieces:
+    """Flat pieces of wall that carry one pressure each.
+
+    Attributes:
+        area: [piece, xyz] area vector pointing into the body, m2.
+        center: [piece, xyz] centroid, m, geometry axes.
+        part: [piece] index into `part_names`.
+        part_names: names of the parts.
+    """
+
+    area: np.ndarray
+    center: np.ndarray
+    part: np.ndarray
+    part_names: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """Whether the numbers of each condition may be trusted.
+
+    Attributes:
+        verdict: [condition] "converged", "oscillating" or "failed".
+        reason: [condition] why it is not "converged"; empty when it is.
+    """
+
+    verdict: Sequence[str]
+    reason: Sequence[str]
+
+
 def integrate(solution: Solution, reference: Reference) -> xr.Dataset:
     """Coefficients of every condition, in total and by part.
 
@@ -60,20 +93,47 @@ def integrate(solution: Solution, reference: Reference) -> xr.Dataset:
         reference: area, chord, span and moment centre, SI.
 
     Returns:
-        Dataset with dims (condition, part); `part` holds "total" first and then the parts of the surface. Each of
-        COEFFICIENTS and PRESSURES has the attributes units, axes, positive and reference; `<name>_spread`
-        (condition) of WITH_SPREAD is half the peak-to-peak in the solver's final window, for moments the estimate that
-        the forces' wandering acts at the wall's root-mean-square distance from the moment centre. Coordinates along
-        `condition`: mach, alpha, beta (rad), reduced rates p_hat, q_hat, r_hat, verdict, reason. A condition that
-        failed has NaN everywhere.
+        As `coefficients` gives; `<name>_spread` is half the peak-to-peak in the solver's final window, for moments the
+        estimate that the forces' wandering acts at the wall's root-mean-square distance from the moment centre.
     """
     mesh, conditions = solution.mesh, solution.conditions
-    force, moment, forebody = _loads(solution, np.asarray(reference.moment_center, dtype=float))
-    dynamic_pressure = 0.5 * np.asarray(conditions.mach, dtype=float) ** 2
-    force = force / (dynamic_pressure * reference.area)[:, None, None]
-    forebody = forebody / (dynamic_pressure * reference.area)[:, None]
+    pieces = WallPieces(mesh.piece_area, mesh.piece_center, mesh.piece_part, mesh.part_names)
+    gauge = solution.wall_pressure.astype(float) - 1.0 / conditions.gamma
+    cp = gauge / (0.5 * np.asarray(conditions.mach, dtype=float) ** 2)
+    judgement = Judgement([r.verdict for r in solution.records], [r.reason for r in solution.records])
+    return coefficients(pieces, cp[mesh.piece_wall], conditions, reference, judgement, _spread(solution, reference))
+
+
+def coefficients(
+    pieces: WallPieces,
+    cp: np.ndarray,
+    conditions: FlowConditions,
+    reference: Reference,
+    judgement: Judgement,
+    spread: Mapping[str, np.ndarray],
+) -> xr.Dataset:
+    """Coefficients of pressures on pieces of wall, in total and by part, from whatever method they come.
+
+    Args:
+        pieces: the wall, closed.
+        cp: [piece, condition] pressure coefficient.
+        conditions: free streams.
+        reference: area, chord, span and moment centre, SI.
+        judgement: verdict and reason of each condition.
+        spread: name in WITH_SPREAD -> [condition] how far the coefficient wanders.
+
+    Returns:
+        Dataset with dims (condition, part); `part` holds "total" first and then the parts of the surface. Each of
+        COEFFICIENTS and PRESSURES has the attributes units, axes, positive and reference; so has `<name>_spread`
+        (condition) of WITH_SPREAD. Coordinates along `condition`: mach, alpha, beta (rad), reduced rates p_hat, q_hat,
+        r_hat, verdict, reason. A condition that failed has NaN everywhere.
+    """
+    pieces, cp = _sorted(pieces, cp)
+    force, moment, forebody = _loads(pieces, cp, np.asarray(reference.moment_center, dtype=float))
+    force = force / reference.area
+    forebody = forebody / reference.area
     lengths = np.array([reference.span, reference.chord, reference.span])
-    moment = geometry_to_body(moment) / ((dynamic_pressure * reference.area)[:, None, None] * lengths)
+    moment = geometry_to_body(moment) / (reference.area * lengths)
     axes = wind_axes(conditions.alpha, conditions.beta)
     values = {
         "CL": np.einsum("cpx,cx->cp", force, axes.lift),
@@ -87,40 +147,47 @@ def integrate(solution: Solution, reference: Reference) -> xr.Dataset:
         "CA_forebody": forebody,
         "CA_base": force[..., 0] - forebody,
     }
-    values["Cp_max"], values["Cp_min"] = _extrema(solution)
-    values |= {f"{name}_spread": value for name, value in _spread(solution, reference).items()}
-    return _dataset(solution, reference, values, (TOTAL, *mesh.part_names))
+    values["Cp_max"], values["Cp_min"] = _extrema(pieces, cp)
+    values |= {f"{name}_spread": value for name, value in spread.items()}
+    return _dataset(conditions, judgement, reference, values, (TOTAL, *pieces.part_names))
 
 
-def _loads(solution: Solution, center: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Forces, moments [condition, total and parts, xyz] and x-force on upstream wall; geometry axes, solver's scale."""
-    mesh = solution.mesh
-    gauge = solution.wall_pressure.astype(float) - 1.0 / solution.conditions.gamma
-    pressure = gauge[mesh.piece_wall]
-    arm_area = np.cross(mesh.piece_center - center, mesh.piece_area)
-    upstream = np.where(mesh.piece_area[:, 0] > 0.0, mesh.piece_area[:, 0], 0.0)
-    weights = np.column_stack([mesh.piece_area, arm_area, upstream])
-    parts = len(mesh.part_names)
-    sums = np.zeros((pressure.shape[1], parts + 1, weights.shape[1]))
-    for part in range(parts):
-        chosen = mesh.piece_part == part
-        sums[:, part + 1] = pressure[chosen].T @ weights[chosen]
+def _loads(pieces: WallPieces, cp: np.ndarray, center: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Forces m2, moments m3 [condition, total and parts, xyz] and x-force on upstream wall, on q_inf; geometry axes."""
+    arm_area = np.cross(pieces.center - center, pieces.area)
+    upstream = np.where(pieces.area[:, 0] > 0.0, pieces.area[:, 0], 0.0)
+    weights = np.column_stack([pieces.area, arm_area, upstream])
+    sums = np.zeros((cp.shape[1], len(pieces.part_names) + 1, weights.shape[1]))
+    for part, chosen in enumerate(_runs(pieces)):
+        sums[:, part + 1] = cp[chosen].T @ weights[chosen]
     sums[:, 0] = sums[:, 1:].sum(axis=1)
     return sums[..., :3], sums[..., 3:6], sums[..., 6]
 
 
-def _extrema(solution: Solution) -> tuple[np.ndarray, np.ndarray]:
-    """Highest and lowest wall Cp, [condition, total and parts]; NaN for a part without wall."""
-    mesh = solution.mesh
-    cp = solution.wall_cp().astype(float)
-    high = np.full((cp.shape[1], len(mesh.part_names) + 1), np.nan)
+def _extrema(pieces: WallPieces, cp: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Highest and lowest Cp, [condition, total and parts]; NaN for a part without wall."""
+    high = np.full((cp.shape[1], len(pieces.part_names) + 1), np.nan)
     low = high.copy()
     high[:, 0], low[:, 0] = cp.max(axis=0), cp.min(axis=0)
-    for part in range(len(mesh.part_names)):
-        own = mesh.piece_wall[mesh.piece_part == part]
+    for part, chosen in enumerate(_runs(pieces)):
+        own = cp[chosen]
         if len(own):
-            high[:, part + 1], low[:, part + 1] = cp[own].max(axis=0), cp[own].min(axis=0)
+            high[:, part + 1], low[:, part + 1] = own.max(axis=0), own.min(axis=0)
     return high, low
+
+
+def _runs(pieces: WallPieces) -> list[slice]:
+    """[part] where its pieces are, which follow each other."""
+    bounds = np.searchsorted(pieces.part, np.arange(len(pieces.part_names) + 1))
+    return [slice(*pair) for pair in pairwise(bounds)]
+
+
+def _sorted(pieces: WallPieces, cp: np.ndarray) -> tuple[WallPieces, np.ndarray]:
+    """Pieces and their pressures in the order of the parts, as they are where they come so."""
+    if (np.diff(pieces.part) >= 0).all():
+        return pieces, cp
+    order = np.argsort(pieces.part, kind="stable")
+    return WallPieces(pieces.area[order], pieces.center[order], pieces.part[order], pieces.part_names), cp[order]
 
 
 def wetted_area(mesh: Mesh) -> float:
@@ -164,9 +231,10 @@ def _wander(record: ConvergenceRecord) -> np.ndarray:
     return np.maximum(spread, 0.5 * np.ptp(history[-(len(history) // 3) :], axis=0))
 
 
-def _dataset(solution: Solution, reference: Reference, values: dict, parts: tuple[str, ...]) -> xr.Dataset:
-    conditions, records = solution.conditions, solution.records
-    failed = np.array([record.verdict == "failed" for record in records], dtype=bool)
+def _dataset(
+    conditions: FlowConditions, judgement: Judgement, reference: Reference, values: dict, parts: tuple[str, ...]
+) -> xr.Dataset:
+    failed = np.array([verdict == "failed" for verdict in judgement.verdict], dtype=bool)
     variables = {}
     for name, value in values.items():
         value = np.array(value, dtype=float)
@@ -184,8 +252,8 @@ def _dataset(solution: Solution, reference: Reference, values: dict, parts: tupl
         "alpha": ("condition", np.asarray(conditions.alpha, dtype=float), angle | {"positive": "nose up"}),
         "beta": ("condition", np.asarray(conditions.beta, dtype=float), angle | {"positive": "wind from the right"}),
         **_reduced_rates(conditions, reference),
-        "verdict": ("condition", np.array([r.verdict for r in records], dtype=str)),
-        "reason": ("condition", np.array([r.reason for r in records], dtype=str)),
+        "verdict": ("condition", np.array(judgement.verdict, dtype=str)),
+        "reason": ("condition", np.array(judgement.reason, dtype=str)),
     }
     attributes = {
         "reference_area_m2": float(reference.area),

@@ -20,11 +20,14 @@ from spaceplane.commands.arguments import (
     write_json,
 )
 from spaceplane.commands.progress import progress_bar
+from spaceplane.errors import InputError, unknown_name
 from spaceplane.files import renamed_when_done
 
 if TYPE_CHECKING:
     from spaceplane.aero.flow_case import FlowCase
+    from spaceplane.vehicle.properties import ReferenceLengths
 
+EULER = "euler"
 EXAMPLE = (
     "Example: spaceplane flow cone.stl --mach 1.5,3 --alpha 0,5 --area 1 --length 2 --span 1 --moment-center 0,0,0 "
     "--cell 0.05 --json cone.json"
@@ -44,6 +47,15 @@ def flow(
     beta: Annotated[
         str, typer.Option("--beta", metavar="DEG[,DEG...]", help="Sideslip, degrees, wind from the right positive.")
     ] = "0",
+    method: Annotated[
+        str,
+        typer.Option(
+            "--method",
+            metavar="NAME",
+            help="euler, or local inclination on the body's triangles (no mesh, from Mach 2): newtonian-expansion, "
+            "newtonian, tangent, tangent-cone, tangent-wedge.",
+        ),
+    ] = EULER,
     rates: Annotated[
         str,
         typer.Option("--rates", metavar="p,q,r", help="Steady roll, pitch and yaw rate about the moment point, rad/s."),
@@ -67,6 +79,8 @@ def flow(
 ) -> int:
     """Inviscid flow about a body: every Mach number with every angle, all on one mesh in one run.
 
+    With a --method other than euler: local inclination, without a mesh.
+
     Exit code 0 when every condition converged, 1 when one did not, 2 for bad input.
     """
     machs, alphas, betas = mach_numbers(mach), angles("--alpha", alpha), angles("--beta", beta)
@@ -85,15 +99,20 @@ def flow(
     writable_file(json_file, "--json")
     writable_file(vtu, "--vtu", (".vtu",))
     writable_file(vtp, "--vtp", (".vtp",))
+    from spaceplane.vehicle.properties import ReferenceLengths
+
+    reference = ReferenceLengths(**lengths, moment_center=center)
+    if method != EULER:
+        given = {"--cell": cell, "--cells": cells, "--domain": domain, "--vtu": vtu, "--vtp": vtp}
+        _refuse_euler_options(method, given | ({"--rates": rates} if any(turning) else {}), solver_precision)
+        return _inclination(body, method, (machs, alphas, betas), reference, json_file)
     from spaceplane.flow.settings import FlowSettings
     from spaceplane.mesh.settings import MeshSettings
-    from spaceplane.vehicle.properties import ReferenceLengths
 
     corners = None if domain is None else numbers("--domain", domain, "m", 6)
     default = MeshSettings(target_cells=200_000, domain=corners and (tuple(corners[:3]), tuple(corners[3:])))
     mesh = options.mesh_settings(cell, cells, default)
     settings = replace(FlowSettings(), precision=solver_precision)
-    reference = ReferenceLengths(**lengths, moment_center=center)
     from spaceplane.vehicle.stl import read_stl
 
     surface = read_stl(body)
@@ -115,6 +134,34 @@ def flow(
         where = f"Mach {r['mach']:g}, alpha {r['alpha_deg']:g} deg, beta {r['beta_deg']:g} deg"
         typer.echo(f"not good: {where}: {r['verdict']}: {r['reason']}", err=True)
     return 1 if bad else 0
+
+
+def _refuse_euler_options(method: str, given: dict[str, object], precision: str) -> None:
+    for option, value in given.items():
+        if value is not None:
+            raise InputError(f"{option}: {value}, allowed with --method {EULER} only")
+    if precision != "single":
+        raise InputError(f"--precision: allowed with --method {EULER} only ('{method}' computes in fp64)")
+
+
+def _inclination(
+    body: Path, name: str, grid: tuple[list[float], ...], reference: ReferenceLengths, json_file: Path | None
+) -> int:
+    from spaceplane.aero.inclination.settings import METHODS, require_mach
+
+    if name not in METHODS:
+        raise InputError("--method: " + unknown_name("method", name, (EULER, *METHODS)))
+    require_mach(grid[0])
+    from spaceplane.aero.inclination.case import run_inclination
+    from spaceplane.vehicle.stl import read_stl
+
+    records = run_inclination(read_stl(body), *grid, reference, name).records
+    write_json(records, json_file)
+    if str(json_file) != "-":
+        from spaceplane.report.summary import print_flow
+
+        print_flow(records)
+    return 0
 
 
 def _write(case: FlowCase, surface, vtu: Path | None, vtp: Path | None) -> None:

@@ -1,4 +1,4 @@
-"""Exact and published values for the blunt sphere."""
+"""Published values for the sphere."""
 
 from __future__ import annotations
 
@@ -9,25 +9,6 @@ from spaceplane.errors import InputError
 DRAG_LOTH = {0.5: 0.484, 0.8: 0.642, 1.0: 0.858, 1.5: 0.996, 2.0: 0.991, 3.0: 0.954, 5.0: 0.904, 10.0: 0.901}
 """Mach -> C_D of a sphere at Reynolds number 1e6, continuum. Loth, Daspit, Jeong, Nagata and Nonomura,
 "Supersonic and hypersonic drag coefficients for a sphere", AIAA J. 59 (2021), doi 10.2514/1.J060153."""
-
-
-def stagnation_cp(mach: float, gamma: float = 1.4) -> float:
-    """Pressure coefficient at a stagnation point: isentropic below Mach 1, Rayleigh's pitot formula above.
-
-    Source: NACA Report 1135 (1953), equations 44 and 100.
-
-    Raises:
-        InputError: a Mach number of 0 or below.
-    """
-    if not mach > 0.0:
-        raise InputError(f"mach = {mach}: a positive number is needed")
-    if mach <= 1.0:
-        pressure = (1.0 + 0.5 * (gamma - 1.0) * mach**2) ** (gamma / (gamma - 1.0))
-    else:
-        rise = (0.5 * (gamma + 1.0) * mach**2) ** (gamma / (gamma - 1.0))
-        shock = (2.0 * gamma / (gamma + 1.0) * mach**2 - (gamma - 1.0) / (gamma + 1.0)) ** (-1.0 / (gamma - 1.0))
-        pressure = rise * shock
-    return (pressure - 1.0) * 2.0 / (gamma * mach**2)
 
 
 def standoff_billig(mach: float) -> float:
@@ -41,8 +22,3 @@ def standoff_billig(mach: float) -> float:
     if not mach > 1.0:
         raise InputError(f"mach = {mach}: a bow shock needs a Mach number above 1")
     return 0.143 * math.exp(3.24 / mach**2)
-
-
-def normal_shock_pressure(mach: float, gamma: float = 1.4) -> float:
-    """Static pressure ratio across a normal shock (NACA Report 1135, equation 93)."""
-    return 1.0 + 2.0 * gamma / (gamma + 1.0) * (mach**2 - 1.0)

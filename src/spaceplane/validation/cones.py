@@ -7,12 +7,12 @@ import math
 import numpy as np
 import xarray as xr
 
+from spaceplane.aero.exact.conical import CN_ALPHA_STONE, center_of_pressure, taylor_maccoll
 from spaceplane.aero.integrate import integrate
 from spaceplane.flow.solution import FlowConditions, Solution
 from spaceplane.mesh.settings import MeshSettings
 from spaceplane.validation import bodies
 from spaceplane.validation.cases import Progress
-from spaceplane.validation.conical import CN_ALPHA_STONE, center_of_pressure, taylor_maccoll
 from spaceplane.validation.flowcase import part_of_wall, reference_of, solve_body
 from spaceplane.validation.records import Record
 

@@ -15,6 +15,8 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
+from spaceplane.aero.inclination.settings import InclinationSettings
+from spaceplane.aero.inclination.solve import local_inclination
 from spaceplane.aero.integrate import integrate
 from spaceplane.flow.solution import FlowConditions
 from spaceplane.mesh.settings import MeshSettings
@@ -22,7 +24,6 @@ from spaceplane.plain import finite
 from spaceplane.validation import horus_tables
 from spaceplane.validation.cases import Progress
 from spaceplane.validation.flowcase import solve_body
-from spaceplane.validation.impact import newtonian
 from spaceplane.validation.records import Record
 from spaceplane.vehicle.build import build
 from spaceplane.vehicle.controls import ControlDeflections
@@ -159,14 +160,27 @@ def lateral_records(clean: xr.Dataset) -> list[Record]:
 
 def impact_records(vehicle: Vehicle) -> list[Record]:
     """The clean vehicle at Mach 20 by impact theory against the base tables: a check of the shape alone."""
-    surface = build(vehicle.shape)
-    records = []
-    for alpha in IMPACT_ALPHAS_DEG:
-        forces = newtonian(surface, IMPACT_MACH, math.radians(alpha), vehicle.reference)
-        for name, computed in (("CL", forces.CL), ("CD", forces.CD)):
-            published = horus_tables.base(name).at(IMPACT_MACH, alpha)
-            records.append(_record(f"{name}, impact theory", IMPACT_MACH, alpha, published, computed, name))
-    return records
+    struck = impact(vehicle)
+    return [
+        _record(
+            f"{name}, impact theory",
+            IMPACT_MACH,
+            alpha,
+            horus_tables.base(name).at(IMPACT_MACH, alpha),
+            float(struck[name][index]),
+            name,
+        )
+        for index, alpha in enumerate(IMPACT_ALPHAS_DEG)
+        for name in ("CL", "CD")
+    ]
+
+
+def impact(vehicle: Vehicle) -> xr.Dataset:
+    """Total coefficients of the clean vehicle by modified Newtonian theory at IMPACT_ALPHAS_DEG, without shadows."""
+    alpha = np.radians(IMPACT_ALPHAS_DEG)
+    conditions = FlowConditions(np.full(len(alpha), IMPACT_MACH), alpha, np.zeros(len(alpha)))
+    settings = InclinationSettings(leeward="free_stream", shadow=False)
+    return local_inclination(build(vehicle.shape), conditions, vehicle.reference, settings).sel(part="total")
 
 
 @dataclass(frozen=True)
@@ -219,16 +233,15 @@ def moment_center_records(clean: xr.Dataset, vehicle: Vehicle) -> list[Record]:
     count, table, reference = len(_grid()), horus_tables.base("Cm"), vehicle.reference
     gap = np.array([table.at(mach, alpha) for mach, alpha in _grid()]) - clean.Cm.values[:count]
     flow = (clean.CN.values[:count], clean.CA.values[:count], gap)
-    surface = build(vehicle.shape)
-    struck = [newtonian(surface, IMPACT_MACH, math.radians(alpha), reference) for alpha in IMPACT_ALPHAS_DEG]
-    impact_gap = [table.at(IMPACT_MACH, a) - f.Cm for a, f in zip(IMPACT_ALPHAS_DEG, struck, strict=True)]
-    impact = (np.array([f.CN for f in struck]), np.array([f.CA for f in struck]), np.array(impact_gap))
+    struck = impact(vehicle)
+    impact_gap = np.array([table.at(IMPACT_MACH, alpha) for alpha in IMPACT_ALPHAS_DEG]) - struck.Cm.values
+    hypersonic = (struck.CN.values, struck.CA.values, impact_gap)
     low, high = "flow, Mach 1.5 to 3, alpha 0 to 20 deg", "impact theory, Mach 20, alpha 20 to 45 deg"
     fits = (
         ("station, height kept", 0, low, fit_moment_center(*flow, reference, "x")),
         ("station, height free", 0, low, fit_moment_center(*flow, reference, "xz")),
         ("height, station free", 2, low, fit_moment_center(*flow, reference, "xz")),
-        ("station, height kept", 0, high, fit_moment_center(*impact, reference, "x")),
+        ("station, height kept", 0, high, fit_moment_center(*hypersonic, reference, "x")),
     )
     return [
         Record(

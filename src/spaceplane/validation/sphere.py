@@ -6,11 +6,12 @@ import math
 
 import numpy as np
 
+from spaceplane.aero.exact.stagnation import normal_shock_pressure, stagnation_cp
 from spaceplane.aero.integrate import integrate
 from spaceplane.flow.solution import FlowConditions, Solution
 from spaceplane.mesh.settings import MeshSettings
 from spaceplane.validation import bodies
-from spaceplane.validation.blunt import DRAG_LOTH, normal_shock_pressure, stagnation_cp, standoff_billig
+from spaceplane.validation.blunt import DRAG_LOTH, standoff_billig
 from spaceplane.validation.cases import Progress
 from spaceplane.validation.flowcase import part_of_wall, reference_of, solve_body
 from spaceplane.validation.records import Record

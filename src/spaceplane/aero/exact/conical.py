@@ -10,9 +10,11 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq, minimize_scalar
 
+from spaceplane.aero.exact.oblique import behind
 from spaceplane.errors import InputError
 
 CN_ALPHA_STONE = {
@@ -76,13 +78,12 @@ def taylor_maccoll(mach: float, half_angle: float, gamma: float = 1.4) -> ConeFl
     lower = mach_angle * (1.0 + 1e-9) + 1e-9
     shock = brentq(lambda angle: _cone_behind(mach, angle, gamma)[0] - half_angle, lower, widest.x, xtol=1e-12)
     _, speed = _cone_behind(mach, shock, gamma)
-    pressure = _surface_pressure(mach, shock, speed, gamma)
     return ConeFlow(
         mach=mach,
         half_angle=half_angle,
         shock_angle=shock,
-        surface_cp=(pressure - 1.0) * 2.0 / (gamma * mach**2),
-        surface_mach=_mach_of(speed, gamma),
+        surface_cp=float(surface_cp(mach, shock, speed, gamma)),
+        surface_mach=float(_mach_of(speed, gamma)),
     )
 
 
@@ -91,51 +92,56 @@ def center_of_pressure(half_angle: float) -> float:
     return 2.0 / (3.0 * math.cos(half_angle) ** 2)
 
 
-def _mach_of(speed: float, gamma: float) -> float:
+def _mach_of(speed: np.ndarray, gamma: float) -> np.ndarray:
     """Mach number from the speed over the maximum speed (Anderson 10.16 inverted)."""
-    return math.sqrt(2.0 / (gamma - 1.0) * speed**2 / (1.0 - speed**2))
+    return np.sqrt(2.0 / (gamma - 1.0) * speed**2 / (1.0 - speed**2))
 
 
-def _behind_shock(mach: float, shock: float, gamma: float) -> tuple[float, float, float]:
-    """Mach number, flow deflection and pressure ratio behind an oblique shock (Anderson 4.7 to 4.17)."""
-    normal = (mach * math.sin(shock)) ** 2
-    deflection = math.atan(2.0 / math.tan(shock) * (normal - 1.0) / (mach**2 * (gamma + math.cos(2.0 * shock)) + 2.0))
-    normal_behind = (normal + 2.0 / (gamma - 1.0)) / (2.0 * gamma / (gamma - 1.0) * normal - 1.0)
-    return (
-        math.sqrt(normal_behind) / math.sin(shock - deflection),
-        deflection,
-        1.0 + 2.0 * gamma / (gamma + 1.0) * (normal - 1.0),
-    )
+def velocity_behind(mach: float, shock: ArrayLike, gamma: float) -> tuple[np.ndarray, np.ndarray]:
+    """Radial and normal velocity over the maximum speed just behind a conical shock at the angle `shock`, rad."""
+    mach_2, deflection, _ = behind(mach, shock, gamma)
+    speed = (2.0 / ((gamma - 1.0) * mach_2**2) + 1.0) ** -0.5
+    return speed * np.cos(shock - deflection), -speed * np.sin(shock - deflection)
+
+
+def _normal_slope(theta: float, radial: float, normal: float, gamma: float) -> float:
+    """Derivative of the normal velocity by the ray's angle theta, rad: the Taylor-Maccoll equation (Anderson 10.15).
+
+    The derivative of the radial velocity is the normal velocity. Velocities are fractions of the maximum speed.
+    """
+    a2 = 0.5 * (gamma - 1.0) * (1.0 - radial**2 - normal**2)
+    return (normal**2 * radial - a2 * (2.0 * radial + normal / math.tan(theta))) / (a2 - normal**2)
+
+
+def surface_cp(mach: float, shock: ArrayLike, speed: ArrayLike, gamma: float) -> np.ndarray:
+    """Pressure coefficient on cones: jump at the shock, then isentropic compression.
+
+    Args:
+        mach: free-stream Mach number.
+        shock: angle of the shock, rad.
+        speed: speed on the cone over the maximum speed.
+        gamma: ratio of specific heats.
+    """
+    mach_2, _, jump = behind(mach, shock, gamma)
+    base = (1.0 + 0.5 * (gamma - 1.0) * mach_2**2) / (1.0 + 0.5 * (gamma - 1.0) * _mach_of(speed, gamma) ** 2)
+    return (jump * base ** (gamma / (gamma - 1.0)) - 1.0) * 2.0 / (gamma * mach**2)
 
 
 def _cone_behind(mach: float, shock: float, gamma: float) -> tuple[float, float]:
     """Half angle of the cone that holds this shock, and the speed on it over the maximum speed.
 
-    Integrates the Taylor-Maccoll equation (Anderson 10.15) from the shock until the velocity across the ray vanishes.
+    Integrates from the shock until the velocity across the ray vanishes.
     """
-    mach_2, deflection, _ = _behind_shock(mach, shock, gamma)
-    speed = (2.0 / ((gamma - 1.0) * mach_2**2) + 1.0) ** -0.5
-    start = np.array([speed * math.cos(shock - deflection), -speed * math.sin(shock - deflection)])
 
     def rates(theta: float, velocity: np.ndarray) -> list[float]:
-        radial, normal = velocity
-        a2 = 0.5 * (gamma - 1.0) * (1.0 - radial**2 - normal**2)
-        turning = (normal**2 * radial - a2 * (2.0 * radial + normal / math.tan(theta))) / (a2 - normal**2)
-        return [normal, turning]
+        return [velocity[1], _normal_slope(theta, velocity[0], velocity[1], gamma)]
 
     def at_wall(theta: float, velocity: np.ndarray) -> float:
         return velocity[1]
 
     at_wall.terminal = True
+    start = np.array(velocity_behind(mach, shock, gamma))
     path = solve_ivp(rates, (shock, 1e-8), start, method="DOP853", rtol=1e-11, atol=1e-12, events=at_wall)
     if not len(path.t_events[0]):
         return 0.0, float(path.y[0, -1])
     return float(path.t_events[0][0]), float(path.y_events[0][0][0])
-
-
-def _surface_pressure(mach: float, shock: float, speed: float, gamma: float) -> float:
-    """Pressure on the cone over the free-stream static pressure: jump at the shock, then isentropic compression."""
-    mach_2, _, jump = _behind_shock(mach, shock, gamma)
-    mach_wall = _mach_of(speed, gamma)
-    base = (1.0 + 0.5 * (gamma - 1.0) * mach_2**2) / (1.0 + 0.5 * (gamma - 1.0) * mach_wall**2)
-    return jump * base ** (gamma / (gamma - 1.0))

@@ -4,8 +4,8 @@ import math
 
 import pytest
 
+from spaceplane.aero.exact.conical import CN_ALPHA_STONE, center_of_pressure, taylor_maccoll
 from spaceplane.errors import InputError
-from spaceplane.validation.conical import CN_ALPHA_STONE, center_of_pressure, taylor_maccoll
 
 # Mach, half angle deg, shock angle deg, surface Cp: independent tabulation for gamma 1.4.
 TABLE = [

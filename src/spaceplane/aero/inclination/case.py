@@ -1,0 +1,75 @@
+"""Any body in any list of free streams by local inclination: the same plain records as from the Euler solver."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import xarray as xr
+
+from spaceplane.aero.conditions import product
+from spaceplane.aero.flow_case import condition_record
+from spaceplane.aero.inclination.settings import method
+from spaceplane.aero.inclination.solve import local_inclination
+from spaceplane.aero.integrate import Reference
+from spaceplane.vehicle.surface import Surface
+
+
+@dataclass(frozen=True)
+class InclinationCase:
+    """What `run_inclination` found.
+
+    Attributes:
+        records: one JSON-ready dict per condition, with the keys of `flow_case.records`.
+        coefficients: the same by part, see `integrate.coefficients`.
+    """
+
+    records: list[dict]
+    coefficients: xr.Dataset
+
+
+def run_inclination(
+    body: Surface,
+    machs: Sequence[float],
+    alphas: Sequence[float],
+    betas: Sequence[float],
+    reference: Reference,
+    name: str = "newtonian-expansion",
+) -> InclinationCase:
+    """Every combination of Mach number, angle of attack and sideslip by one method of local inclination.
+
+    In the records `cells` and `iterations` are 0 and `residual_drop` is None, for there is no mesh and nothing
+    iterates; `converged` is true and `verdict` "inclination".
+
+    Args:
+        body: watertight surface.
+        machs: Mach numbers, from `settings.LEAST_MACH` up.
+        alphas: angles of attack, rad.
+        betas: sideslip angles, rad.
+        reference: area, chord, span and moment centre, SI.
+        name: of the method, see `settings.METHODS`.
+
+    Raises:
+        InputError: a bad condition or an unknown method.
+    """
+    settings = method(name)
+    conditions = product(list(machs), list(alphas), list(betas))
+    began = time.perf_counter()
+    coefficients = local_inclination(body, conditions, reference, settings)
+    seconds = (time.perf_counter() - began) / len(conditions)
+    records = [
+        condition_record(
+            coefficients,
+            i,
+            converged=True,
+            verdict="inclination",
+            residual_drop=None,
+            iterations=0,
+            seconds=round(seconds, 6),
+            cells=0,
+            reason="",
+        )
+        for i in range(len(conditions))
+    ]
+    return InclinationCase(records, coefficients)
