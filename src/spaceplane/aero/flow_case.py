@@ -8,7 +8,11 @@ from dataclasses import dataclass
 import xarray as xr
 
 from spaceplane.aero.conditions import product
-from spaceplane.aero.integrate import COEFFICIENTS, PRESSURES, TOTAL, Reference, integrate
+from spaceplane.aero.increments.add import WITH_SOURCES, integrate_with
+from spaceplane.aero.increments.settings import Air, IncrementSettings
+from spaceplane.aero.integrate import BY_SOURCE, COEFFICIENTS, PRESSURES, TOTAL, Reference
+from spaceplane.environment.atmosphere import Ambient
+from spaceplane.errors import InputError
 from spaceplane.flow.settings import FlowSettings
 from spaceplane.flow.solution import Solution
 from spaceplane.flow.solve import solve
@@ -26,7 +30,7 @@ class FlowCase:
 
     Attributes:
         records: one JSON-ready dict per condition, see `records`.
-        coefficients: the same by part, see `integrate`.
+        coefficients: the same by part, see `integrate_with`.
         mesh: the mesh.
         solution: the flow.
     """
@@ -46,6 +50,8 @@ def run_flow(
     mesh_settings: MeshSettings,
     flow_settings: FlowSettings,
     progress: Progress | None = None,
+    increments: IncrementSettings | None = None,
+    ambient: Ambient | None = None,
 ) -> FlowCase:
     """Mesh a body and solve every combination of Mach number, angle of attack and sideslip in one ensemble.
 
@@ -58,16 +64,22 @@ def run_flow(
         mesh_settings: how to mesh.
         flow_settings: how to solve.
         progress: passed on to the solver.
+        increments: viscous increments; none when None.
+        ambient: undisturbed air of every condition, for skin friction.
 
     Raises:
-        InputError: a bad condition or body.
+        InputError: a bad condition or body, or skin friction without air.
     """
     conditions = product(list(machs), list(alphas), list(betas))
+    air = None if ambient is None else Air.of([ambient] * len(conditions))
+    increments = increments or IncrementSettings()
+    if increments.friction != "off" and air is None:
+        raise InputError(f"friction = {increments.friction!r}: needs the altitude")
     if progress:
         progress("mesh", 0, 1, "")
     mesh = generate(body, mesh_settings, progress)
     solution = solve(mesh, conditions, flow_settings, progress)
-    coefficients = integrate(solution, reference)
+    coefficients = integrate_with(solution, reference, increments, air)
     return FlowCase(records(solution, coefficients), coefficients, mesh, solution)
 
 
@@ -76,7 +88,8 @@ def records(solution: Solution, coefficients: xr.Dataset) -> list[dict]:
 
     Keys: mach, alpha_deg, beta_deg, COEFFICIENTS, PRESSURES, converged, verdict, residual_drop, iterations, seconds,
     cells, reason. `seconds` is the wall time of the whole ensemble divided by its conditions. Values of a
-    failed condition are None.
+    failed condition are None. With viscous increments, `by_source` holds what "inviscid", "friction" and "base"
+    add to the coefficients.
     """
     c = solution.conditions
     seconds = total_seconds(solution) / max(len(c), 1)
@@ -97,9 +110,20 @@ def records(solution: Solution, coefficients: xr.Dataset) -> list[dict]:
                 "seconds": round(seconds, 3),
                 "cells": solution.mesh.cells,
                 "reason": record.reason,
+                **_by_source(totals, i),
             }
         )
     return result
+
+
+def _by_source(totals: xr.Dataset, condition: int) -> dict:
+    if "source" not in totals.coords:
+        return {}
+    shares = {
+        str(source): {name: finite(totals[f"{name}{BY_SOURCE}"].values[condition, column]) for name in WITH_SOURCES}
+        for column, source in enumerate(totals.source.values)
+    }
+    return {"by_source": shares}
 
 
 def total_seconds(solution: Solution) -> float:

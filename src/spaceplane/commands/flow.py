@@ -13,6 +13,7 @@ from spaceplane.commands.arguments import (
     angles,
     existing_file,
     mach_numbers,
+    number,
     numbers,
     positive,
     writable_file,
@@ -24,6 +25,7 @@ from spaceplane.files import renamed_when_done
 
 if TYPE_CHECKING:
     from spaceplane.aero.flow_case import FlowCase
+    from spaceplane.environment.atmosphere import Ambient
 
 EXAMPLE = (
     "Example: spaceplane flow cone.stl --mach 1.5,3 --alpha 0,5 --area 1 --length 2 --span 1 --moment-center 0,0,0 "
@@ -55,6 +57,13 @@ def flow(
         typer.Option("--domain", metavar="x,y,z,x,y,z", help="Lower and upper corner of the air to mesh, metres."),
     ] = None,
     precision: options.Precision = "fp32",
+    friction: options.Friction = "off",
+    base: options.Base = "inviscid",
+    wall_temperature: options.WallTemperature = None,
+    transition_reynolds: options.TransitionReynolds = None,
+    altitude: Annotated[
+        str | None, typer.Option("--altitude", metavar="M", help="Altitude whose air the friction is computed with.")
+    ] = None,
     json_file: options.JsonFile = None,
     vtu: Annotated[Path | None, typer.Option("--vtu", metavar="FILE", help="Write the flow for ParaView.")] = None,
     vtp: Annotated[
@@ -62,6 +71,8 @@ def flow(
     ] = None,
 ) -> int:
     """Inviscid flow about a body: every Mach number with every angle, all on one mesh in one run.
+
+    Skin friction and base pressure are added if asked for.
 
     Exit code 0 when every condition converged, 1 when one did not, 2 for bad input.
     """
@@ -75,6 +86,8 @@ def flow(
     }
     center = tuple(numbers("--moment-center", moment_center, "m", 3))
     solver_precision = options.precision(precision)
+    increments = options.increment_settings(friction, base, wall_temperature, transition_reynolds)
+    ambient = _ambient(friction, altitude)
     existing_file(body, "an STL file")
     writable_file(json_file, "--json")
     writable_file(vtu, "--vtu", (".vtu",))
@@ -95,7 +108,7 @@ def flow(
 
     with progress_bar() as tell:
         tell("mesh", 0, 1, "")
-        case = run_flow(surface, machs, alphas, betas, reference, mesh, settings, tell)
+        case = run_flow(surface, machs, alphas, betas, reference, mesh, settings, tell, increments, ambient)
     _write(case, surface, vtu, vtp)
     write_json(case.records, json_file)
     for warning in case.mesh.record.get("warnings") or ():
@@ -109,6 +122,17 @@ def flow(
         where = f"Mach {r['mach']:g}, alpha {r['alpha_deg']:g} deg, beta {r['beta_deg']:g} deg"
         typer.echo(f"not good: {where}: {r['verdict']}: {r['reason']}", err=True)
     return 1 if bad else 0
+
+
+def _ambient(friction: str, altitude: str | None) -> Ambient | None:
+    """The air at the altitude, which friction needs and nothing else does."""
+    if (friction == "off") != (altitude is None):
+        raise InputError(f"--altitude: {altitude or 'missing'}, goes with --friction laminar or turbulent")
+    if altitude is None:
+        return None
+    from spaceplane.environment.atmosphere import us1976
+
+    return us1976(number("--altitude", altitude, "m"))
 
 
 def _write(case: FlowCase, surface, vtu: Path | None, vtp: Path | None) -> None:
