@@ -173,6 +173,10 @@ def test_unknown_choices(capfd, tmp_path, options):
     [
         (["--friction", "laminar", "--wall-temperature", "0"], "--wall-temperature"),
         (["--friction", "laminar", "--wall-temperature", "warm"], "--wall-temperature"),
+        (["--emissivity", "0.8"], "emissivity = 0.8: needs friction"),
+        (["--friction", "laminar", "--emissivity", "2"], "emissivity = 2"),
+        (["--friction", "laminar", "--emissivity", "dark"], "--emissivity"),
+        (["--friction", "laminar", "--emissivity", "0.8", "--wall-temperature", "300"], "not both"),
         (["--wall-temperature", "300"], "wall_temperature_K = 300: needs friction"),
         (["--friction", "turbulent", "--transition-reynolds", "-1"], "transition_reynolds = -1"),
         (["--friction", "turbulent", "--transition-reynolds", "x"], "--transition-reynolds"),

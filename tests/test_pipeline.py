@@ -272,6 +272,10 @@ def test_yaml_s_off_is_the_word():
         ({"vehicle_class": "IV"}, lambda r: [v["vehicle_class"] for v in r["verdicts"]]),
         ({"category": "C"}, lambda r: [v["category"] for v in r["verdicts"]]),
         ({"increments": IncrementSettings(friction="laminar")}, lambda r: r["coefficients"]["CD"]),
+        (
+            {"increments": IncrementSettings("turbulent", transition_reynolds=1e6, wall_temperature_K=400.0)},
+            lambda r: r["coefficients"]["CD"],
+        ),
         ({"increments": IncrementSettings(base="correlation")}, lambda r: r["coefficients"]["CA_base"]),
         ({"steps": DerivativeSteps(alpha=0.05)}, lambda r: r["derivatives"]["CL_alpha"]["value"]),
         ({"steps": DerivativeSteps(beta=0.1)}, lambda r: r["derivatives"]["CY_beta"]["value"]),

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from spaceplane.aero.increments.friction_laws import LAMINAR, TURBULENT, local_friction
+from spaceplane.aero.increments.friction_laws import LAMINAR, TURBULENT, local_friction, radiative_temperature
 from spaceplane.environment.atmosphere import sutherland_viscosity
 
 
@@ -73,3 +73,16 @@ def test_a_cold_wall_has_more_friction():
 
 def test_no_reynolds_number_no_friction():
     assert local_friction(TURBULENT, np.zeros(2), np.ones(2), np.full(2, 250.0), None) == pytest.approx(0.0)
+
+
+@pytest.mark.parametrize("law", [LAMINAR, TURBULENT])
+def test_a_radiating_wall_is_in_balance(law):
+    """Heat by Reynolds' analogy equals emitted heat; the blacker the colder, without emission adiabatic."""
+    reynolds, mach, temperature, flux = (np.array([v]) for v in (1e6, 6.0, 240.0, 20.0))
+    recovered = 240.0 * (1.0 + 0.2 * law.recovery * 36.0)
+    walls = [radiative_temperature(law, reynolds, mach, temperature, flux, e)[0] for e in (1e-9, 0.3, 0.85)]
+    assert walls[0] == pytest.approx(recovered, rel=1e-5)
+    assert walls[0] > walls[1] > walls[2] > 240.0
+    stanton = local_friction(law, reynolds, mach, temperature, walls[2])[0] / 2.0 * 0.72 ** (-2.0 / 3.0)
+    heat = stanton * 20.0 * 1004.685 * (recovered - walls[2])
+    assert heat == pytest.approx(0.85 * 5.670374419e-8 * walls[2] ** 4, rel=1e-5)

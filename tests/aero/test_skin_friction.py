@@ -118,6 +118,18 @@ def test_a_cold_wall_drags_more():
     assert plate_drag("turbulent", 3.0, 50, wall_temperature_K=300.0) > 1.05 * plate_drag("turbulent", 3.0, 50)
 
 
+def test_a_radiating_wall_lies_between_cold_and_adiabatic():
+    """The denser the air the more heat it brings, and the closer the wall comes to the adiabatic temperature."""
+    shares = []
+    for reynolds in (1e5, 1e6, 1e7):
+        cold, adiabatic, radiating = (
+            plate_drag("turbulent", 8.0, 20, reynolds, **more)
+            for more in ({"wall_temperature_K": 220.0}, {}, {"emissivity": 0.8})
+        )
+        shares.append((cold - radiating) / (cold - adiabatic))
+    assert 0.0 < shares[0] < shares[1] < shares[2] < 1.0
+
+
 def test_mirrored_flow_gives_the_mirrored_force(make_lengths):
     """Port and starboard of a cone in sideslip: CY, Cl, Cn reverse, the rest stays."""
     mesh = walls.cone(math.radians(15.0), (20, 24))
@@ -153,6 +165,10 @@ def test_air_of_an_atmosphere_and_of_a_reynolds_number_agree():
         ({"friction": "laminar", "wall_temperature_K": 0.0}, "wall_temperature_K = 0"),
         ({"friction": "laminar", "wall_temperature_K": math.nan}, "wall_temperature_K = nan"),
         ({"friction": "turbulent", "transition_reynolds": -1.0}, "transition_reynolds = -1"),
+        ({"friction": "laminar", "emissivity": 0.0}, "emissivity = 0"),
+        ({"friction": "laminar", "emissivity": math.nan}, "emissivity = nan"),
+        ({"emissivity": 0.8}, "emissivity = 0.8: needs friction"),
+        ({"friction": "laminar", "emissivity": 0.8, "wall_temperature_K": 300.0}, "not both"),
         ({"wall_temperature_K": 300.0}, "wall_temperature_K = 300: needs friction"),
         ({"friction": "laminar", "transition_reynolds": 1e6}, "transition_reynolds = 1e.06: needs friction turbulent"),
     ],

@@ -59,6 +59,7 @@ def analyse(
     friction: options.Friction = "off",
     base: options.Base = "inviscid",
     wall_temperature: options.WallTemperature = None,
+    emissivity: options.Emissivity = None,
     transition_reynolds: options.TransitionReynolds = None,
     allow_outside_limits: options.AllowOutside = False,
     json_file: options.JsonFile = None,
@@ -71,7 +72,7 @@ def analyse(
     machs = mach_numbers(mach)
     folder = out or Path("out") / re.sub(r"[^\w.-]+", "-", Path(vehicle).stem if "/" in vehicle else vehicle)
     subject = options.load_vehicle(vehicle, changes, allow_outside_limits)
-    increments = options.increment_settings(friction, base, wall_temperature, transition_reynolds)
+    increments = options.increment_settings(friction, base, wall_temperature, emissivity, transition_reynolds)
     settings = _settings(machs, alpha, deflect, allow_outside_limits, cell, cells, precision)
     steps = replace(settings.steps, two_step_sizes=True) if two_steps else settings.steps
     settings = replace(

@@ -60,6 +60,7 @@ def flow(
     friction: options.Friction = "off",
     base: options.Base = "inviscid",
     wall_temperature: options.WallTemperature = None,
+    emissivity: options.Emissivity = None,
     transition_reynolds: options.TransitionReynolds = None,
     altitude: Annotated[
         str | None, typer.Option("--altitude", metavar="M", help="Altitude whose air the friction is computed with.")
@@ -86,7 +87,7 @@ def flow(
     }
     center = tuple(numbers("--moment-center", moment_center, "m", 3))
     solver_precision = options.precision(precision)
-    increments = options.increment_settings(friction, base, wall_temperature, transition_reynolds)
+    increments = options.increment_settings(friction, base, wall_temperature, emissivity, transition_reynolds)
     ambient = _ambient(friction, altitude)
     existing_file(body, "an STL file")
     writable_file(json_file, "--json")

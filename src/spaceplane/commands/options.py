@@ -55,6 +55,12 @@ WallTemperature = Annotated[
     str | None,
     typer.Option("--wall-temperature", metavar="K", help="Wall temperature for the friction; adiabatic by default."),
 ]
+Emissivity = Annotated[
+    str | None,
+    typer.Option(
+        "--emissivity", metavar="E", help="Wall that radiates the heat of friction away, instead of adiabatic."
+    ),
+]
 TransitionReynolds = Annotated[
     str | None,
     typer.Option("--transition-reynolds", metavar="RE", help="With turbulent friction: laminar below this number."),
@@ -105,7 +111,7 @@ def mesh_settings(cell: str | None, cells: str | None, default: MeshSettings) ->
 
 
 def increment_settings(
-    friction: str, base: str, wall_temperature: str | None, transition_reynolds: str | None
+    friction: str, base: str, wall_temperature: str | None, emissivity: str | None, transition_reynolds: str | None
 ) -> IncrementSettings:
     """Settings of the viscous increments.
 
@@ -114,9 +120,10 @@ def increment_settings(
     """
     kelvin = None if wall_temperature is None else positive("--wall-temperature", wall_temperature, "K")
     reynolds = None if transition_reynolds is None else number("--transition-reynolds", transition_reynolds)
+    radiating = None if emissivity is None else number("--emissivity", emissivity)
     from spaceplane.aero.increments.settings import IncrementSettings
 
-    return IncrementSettings(friction, base, kelvin, reynolds)
+    return IncrementSettings(friction, base, kelvin, radiating, reynolds)
 
 
 def precision(text: str) -> str:

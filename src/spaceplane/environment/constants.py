@@ -18,6 +18,7 @@ COLLISION_DIAMETER = 3.65e-10  # m, effective, for the mean free path
 # CODATA 2018 (exact), for the equilibrium-air model that works from molecular data.
 BOLTZMANN = 1.380649e-23  # J/K
 PLANCK = 6.62607015e-34  # J s
+STEFAN_BOLTZMANN = 5.670374419e-8  # W/(m2 K4)
 
 
 def gravity(radius: float) -> float:

@@ -177,10 +177,12 @@ def increments_text(result: dict) -> str:
     """One sentence on the viscous increments in the coefficients; empty where there are none."""
     settings = (result.get("settings") or {}).get("increments") or {}
     friction, base = settings.get("friction", "off"), settings.get("base", "inviscid")
+    glow = settings.get("emissivity")
     wall, transition = settings.get("wall_temperature_K"), settings.get("transition_reynolds")
     pieces = []
     if friction != "off":
         at = f"wall at {number(wall, 4)} K" if is_number(wall) else "adiabatic wall"
+        at = f"radiating wall of emissivity {number(glow, 3)}" if is_number(glow) else at
         onset = f", laminar below a Reynolds number of {number(transition, 3)}" if is_number(transition) else ""
         pieces.append(f"{friction} skin friction ({at}{onset})")
     if base != "inviscid":

@@ -23,7 +23,9 @@ class IncrementSettings:
     Attributes:
         friction: "off", "laminar" or "turbulent" skin friction, see `skin_friction`.
         base: "inviscid" keeps the computed pressure of blunt bases, "correlation" replaces it, see `base_pressure`.
-        wall_temperature_K: temperature of the wall for the friction, K; None takes an adiabatic wall.
+        wall_temperature_K: temperature of the wall for the friction, K; None takes an adiabatic wall, or `emissivity`.
+        emissivity: of a wall that radiates away the heat that the boundary layer brings and has the temperature of this
+            balance; None takes an adiabatic wall, or `wall_temperature_K`.
         transition_reynolds: with turbulent friction, Reynolds number on edge conditions and running length below
             which the boundary layer is laminar; None makes it turbulent from the start.
     """
@@ -31,6 +33,7 @@ class IncrementSettings:
     friction: str = "off"
     base: str = "inviscid"
     wall_temperature_K: float | None = None
+    emissivity: float | None = None
     transition_reynolds: float | None = None
 
     def __post_init__(self) -> None:
@@ -41,8 +44,13 @@ class IncrementSettings:
             value = getattr(self, name)
             if value is not None and not (math.isfinite(value) and value > 0.0):
                 raise InputError(f"{name} = {value}: a positive number is needed")
-        if self.wall_temperature_K is not None and self.friction == "off":
-            raise InputError(f"wall_temperature_K = {self.wall_temperature_K:g}: needs friction laminar or turbulent")
+        if self.emissivity is not None and not 0.0 < self.emissivity <= 1.0:
+            raise InputError(f"emissivity = {self.emissivity}: above 0 and at most 1")
+        for name in ("wall_temperature_K", "emissivity"):
+            if getattr(self, name) is not None and self.friction == "off":
+                raise InputError(f"{name} = {getattr(self, name):g}: needs friction laminar or turbulent")
+        if self.wall_temperature_K is not None and self.emissivity is not None:
+            raise InputError(f"emissivity = {self.emissivity:g}: give it or wall_temperature_K, not both")
         if self.transition_reynolds is not None and self.friction != "turbulent":
             raise InputError(f"transition_reynolds = {self.transition_reynolds:g}: needs friction turbulent")
 

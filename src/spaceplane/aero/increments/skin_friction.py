@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from spaceplane.aero.increments.edge import Edge, along_wall, edge_of
-from spaceplane.aero.increments.friction_laws import LAMINAR, LAWS, FrictionLaw, local_friction
+from spaceplane.aero.increments.friction_laws import LAMINAR, LAWS, FrictionLaw, local_friction, radiative_temperature
 from spaceplane.aero.increments.running_length import neighbours, running_length
 from spaceplane.aero.increments.settings import Air, IncrementSettings
 from spaceplane.environment.atmosphere import sutherland_viscosity
@@ -57,11 +57,15 @@ def wall_shear(
     direction = along_wall(edge.velocity, mesh.wall_area)
     dynamic_pressure = 0.5 * edge.density * edge.speed**2
     mach = edge.speed / np.sqrt(edge.temperature)
+    mass_flux = edge.density * edge.speed * float(air.sonic_reynolds[condition]) * sutherland_viscosity(ambient)
 
     def shear(law: FrictionLaw) -> tuple[np.ndarray, np.ndarray]:
         """Shear by one law, and the Reynolds number that it is taken at."""
         reynolds = unit_reynolds * running_length(mesh, pairs, direction, law.exponent)
-        friction = local_friction(law, reynolds, mach, temperature, settings.wall_temperature_K, edge.gamma)
+        wall: float | np.ndarray | None = settings.wall_temperature_K
+        if settings.emissivity is not None:
+            wall = radiative_temperature(law, reynolds, mach, temperature, mass_flux, settings.emissivity, edge.gamma)
+        friction = local_friction(law, reynolds, mach, temperature, wall, edge.gamma)
         return friction * dynamic_pressure, reynolds
 
     found, _ = shear(LAWS[settings.friction])
