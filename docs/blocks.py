@@ -240,6 +240,12 @@ def flow_settings() -> str:
     return settings_table(FlowSettings)
 
 
+def increment_settings() -> str:
+    from spaceplane.aero.increments.settings import IncrementSettings
+
+    return settings_table(IncrementSettings)
+
+
 def validation_block(case: str) -> Callable[[], str]:
     """Table of one validation case as last run on fine meshes."""
 
@@ -426,6 +432,7 @@ BLOCKS: dict[str, Callable[[], str]] = {
     "command line": command_line,
     "mesh settings": mesh_settings,
     "flow settings": flow_settings,
+    "increment settings": increment_settings,
     "demo summary": demo_summary,
     "demo coefficients": demo_coefficients,
     "demo modes": demo_modes,

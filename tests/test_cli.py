@@ -161,9 +161,47 @@ def test_unknown_precision(capfd, tmp_path):
     refused(capfd, "analyse", "horus-2b", "--precision", "fp16", "--out", tmp_path, naming="--precision")
 
 
-@pytest.mark.parametrize("options", [["--form", "x"], ["--class", "V"], ["--category", "D"]])
+@pytest.mark.parametrize(
+    "options",
+    [["--form", "x"], ["--class", "V"], ["--category", "D"], ["--friction", "on"], ["--base", "vacuum"]],
+)
 def test_unknown_choices(capfd, tmp_path, options):
     refused(capfd, "analyse", "horus-2b", *options, "--out", tmp_path, naming=options[1])
+
+
+@pytest.mark.parametrize(
+    ("options", "naming"),
+    [
+        (["--friction", "laminar", "--wall-temperature", "0"], "--wall-temperature"),
+        (["--friction", "laminar", "--wall-temperature", "warm"], "--wall-temperature"),
+        (["--emissivity", "0.8"], "emissivity = 0.8: needs friction"),
+        (["--friction", "laminar", "--emissivity", "2"], "emissivity = 2"),
+        (["--friction", "laminar", "--emissivity", "dark"], "--emissivity"),
+        (["--friction", "laminar", "--emissivity", "0.8", "--wall-temperature", "300"], "not both"),
+        (["--wall-temperature", "300"], "wall_temperature_K = 300: needs friction"),
+        (["--friction", "turbulent", "--transition-reynolds", "-1"], "transition_reynolds = -1"),
+        (["--friction", "turbulent", "--transition-reynolds", "x"], "--transition-reynolds"),
+        (["--friction", "laminar", "--transition-reynolds", "1e6"], "needs friction turbulent"),
+    ],
+)
+def test_bad_increments(capfd, tmp_path, options, naming):
+    assert naming in refused(capfd, "analyse", "horus-2b", *options, "--out", tmp_path / "o", naming=naming[:20])
+    body = tetrahedron(tmp_path / "t.stl")
+    altitude = ["--altitude", "20000"] if "--friction" in options else []
+    refused(capfd, "flow", body, "--mach", 2, *FLOW, *options, *altitude, naming=naming)
+
+
+@pytest.mark.parametrize(
+    ("options", "naming"),
+    [
+        (["--friction", "laminar"], "--altitude: missing"),
+        (["--altitude", "20000"], "--altitude: 20000"),
+        (["--friction", "laminar", "--altitude", "high"], "--altitude"),
+        (["--friction", "laminar", "--altitude", "200000"], "altitude_m = 200000"),
+    ],
+)
+def test_friction_of_a_flow_goes_with_its_altitude(capfd, tmp_path, options, naming):
+    refused(capfd, "flow", tetrahedron(tmp_path / "t.stl"), "--mach", 2, *FLOW, *options, naming=naming)
 
 
 @pytest.mark.parametrize(

@@ -12,6 +12,7 @@ from spaceplane import pipeline
 from spaceplane.aero import bodies
 from spaceplane.aero.conditions import DerivativeSteps
 from spaceplane.aero.database import AeroDatabase
+from spaceplane.aero.increments.settings import IncrementSettings
 from spaceplane.errors import InputError
 from spaceplane.flow.freestream import direction
 from spaceplane.flow.solution import ConvergenceRecord, Solution
@@ -31,7 +32,8 @@ def newtonian(failing=(), oscillating=()):
         normal = mesh.wall_area / np.linalg.norm(mesh.wall_area, axis=1)[:, None]
         # The wall of a turning body moves into the air.
         turned = np.cross(mesh.wall_center - conditions.center, normal) @ conditions.angular_velocity().T
-        met = normal @ direction(conditions.alpha, conditions.beta).T - turned / conditions.mach
+        wind = direction(conditions.alpha, conditions.beta)
+        met = normal @ wind.T - turned / conditions.mach
         cp = 2.0 * np.clip(met, 0.0, 1.0) ** 2 + 0.01 * conditions.mach
         pressure = 1.0 / conditions.gamma + cp * 0.5 * conditions.mach**2
         records = []
@@ -41,6 +43,8 @@ def newtonian(failing=(), oscillating=()):
             reason = "" if verdict == "converged" else "made to fail" if i in failing else "made to swing"
             records.append(ConvergenceRecord(verdict, 3.0, 12, np.zeros(12), history, history[0], history[0], reason))
         state = np.ones((mesh.cells, 5, len(conditions)), np.float32)
+        state[:, 1:4] = wind.T
+        state[:, 4] = 1.0 / conditions.gamma
         statistics = {"seconds": 0.1, "precision": "single"}
         return Solution(mesh, conditions, state, pressure, tuple(records), statistics)
 
@@ -226,6 +230,58 @@ def test_an_unwritable_folder_is_found_before_anything_is_computed(monkeypatch, 
         pipeline.run(horus_2b(), SETTINGS, tmp_path / "file" / "out")
 
 
+def test_increments_travel_through_coefficients_derivatives_and_files(monkeypatch, analysis, tmp_path):
+    """Totals are the sums of their sources; thinner air has more friction; control derivatives have it too."""
+    monkeypatch.setattr(bodies, "solve", newtonian())
+    increments = IncrementSettings(friction="turbulent", base="correlation")
+    found = analyse(horus_2b(), replace(SETTINGS, increments=increments))
+    drag = float(found.coefficients.CD.sel(part="total")[10])
+    assert drag == pytest.approx(found.points[1].point.CD)
+    paths = pipeline.write(found, tmp_path)
+    result = json.loads(paths["result.json"].read_text(encoding="utf-8"), parse_constant=no_constant)
+    for point, plain in zip(result["flight_points"], record.result(analysis)["flight_points"], strict=True):
+        sources = point["coefficients_by_source"]
+        assert list(sources) == ["inviscid", "friction", "base"]
+        assert list(plain["coefficients_by_source"]) == ["inviscid"]
+        for name, value in sources["inviscid"].items():
+            assert value == pytest.approx(plain["coefficients"][name], abs=1e-12)
+            assert sum(s[name] for s in sources.values()) == pytest.approx(point["coefficients"][name], abs=1e-12)
+            if name not in ("CA", "CN"):
+                parts = sum(part[name] for part in point["coefficients_by_part"].values())
+                assert parts == pytest.approx(point["coefficients"][name], abs=1e-12)
+        assert 0.001 < sources["friction"]["CD"] < 0.02
+        pressure = point["coefficients"]["CA_forebody"] + point["coefficients"]["CA_base"]
+        assert pressure + sources["friction"]["CA"] == pytest.approx(point["coefficients"]["CA"])
+    database = AeroDatabase.load(paths["aero.nc"]).data
+    assert list(database.source.values) == ["inviscid", "friction", "base"]
+    assert database.CD_by_source.dims == ("case", "part", "source")
+    assert {"units", "axes", "positive", "reference"} <= set(database.CD_by_source.attrs)
+    moved = [float(d.derivatives.CD_elevon_left.sel(part="total")[1]) for d in (analysis, found)]
+    assert moved[0] != moved[1]
+    page = paths["report.html"].read_text(encoding="utf-8")
+    assert "turbulent skin friction (adiabatic wall) and base pressure by correlation" in page
+    assert page.count("of skin friction") >= 3
+
+
+def test_friction_grows_with_altitude(monkeypatch, analysis):
+    monkeypatch.setattr(bodies, "solve", newtonian())
+    monkeypatch.setattr(bodies, "build", lambda *_: analysis.body.surface)
+    monkeypatch.setattr(bodies, "generate", lambda *_: analysis.body.solution.mesh)
+    drags = []
+    for altitude in (20_000.0, 40_000.0):
+        increments = IncrementSettings(friction="turbulent")
+        settings = AnalyseSettings(
+            mach=(2.5,), altitude_m=(altitude,), controls=False, mesh=SETTINGS.mesh, increments=increments
+        )
+        (point,) = record.result(analyse(horus_2b(), settings))["flight_points"]
+        drags.append(point["coefficients_by_source"]["friction"]["CD"])
+    assert 1.3 < drags[1] / drags[0] < 2.0
+
+
+def test_yaml_s_off_is_the_word():
+    assert AnalyseSettings.from_mapping({"increments": {"friction": False}}) == AnalyseSettings()
+
+
 @pytest.mark.parametrize(
     ("change", "moved"),
     [
@@ -236,6 +292,12 @@ def test_an_unwritable_folder_is_found_before_anything_is_computed(monkeypatch, 
         ({"form": "thesis"}, lambda r: r["A"]),
         ({"vehicle_class": "IV"}, lambda r: [v["vehicle_class"] for v in r["verdicts"]]),
         ({"category": "C"}, lambda r: [v["category"] for v in r["verdicts"]]),
+        ({"increments": IncrementSettings(friction="laminar")}, lambda r: r["coefficients"]["CD"]),
+        (
+            {"increments": IncrementSettings("turbulent", transition_reynolds=1e6, wall_temperature_K=400.0)},
+            lambda r: r["coefficients"]["CD"],
+        ),
+        ({"increments": IncrementSettings(base="correlation")}, lambda r: r["coefficients"]["CA_base"]),
         ({"steps": DerivativeSteps(alpha=0.05)}, lambda r: r["derivatives"]["CL_alpha"]["value"]),
         ({"steps": DerivativeSteps(beta=0.1)}, lambda r: r["derivatives"]["CY_beta"]["value"]),
         ({"steps": DerivativeSteps(mach_fraction=0.1)}, lambda r: r["derivatives"]["CL_M"]["step"]),
@@ -268,6 +330,7 @@ def test_settings_survive_a_round_trip_through_plain_values():
                 "fine_parts": ["wing"],
             },
             "flow": {"precision": "double"},
+            "increments": {"friction": "turbulent", "base": "correlation", "wall_temperature_K": 800},
         }
     )
     assert settings.steps.alpha == pytest.approx(math.radians(0.5))
@@ -294,6 +357,12 @@ def test_settings_survive_a_round_trip_through_plain_values():
         ({"flow": {"precision": "half"}}, "precision"),
         ({"steps": {"alpha_deg": 0}}, "alpha"),
         ({"form": "magic"}, "form"),
+        ({"increments": {"friction": "on"}}, "friction = 'on': allowed are off, laminar, turbulent"),
+        ({"increments": {"friction": 3}}, r"increments\.friction = 3: a word"),
+        ({"increments": {"base": False}}, r"increments\.base = False"),
+        ({"increments": {"wall_temperature": 300}}, "did you mean 'increments.wall_temperature_K'"),
+        ({"increments": {"friction": "laminar", "wall_temperature_K": -3}}, "wall_temperature_K = -3"),
+        ({"increments": "turbulent"}, "increments"),
         ({"vehicle_class": "V"}, "vehicle_class"),
         ({"control_step": 0.0}, "control_step"),
         ({"deflections": {"elevon": 3}}, "elevon"),

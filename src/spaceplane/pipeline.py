@@ -14,7 +14,8 @@ from spaceplane.aero.conditions import ConditionPlan
 from spaceplane.aero.conditions import plan as plan_conditions
 from spaceplane.aero.database import SolvedCases, assemble
 from spaceplane.aero.derivatives import differentiate
-from spaceplane.aero.integrate import integrate
+from spaceplane.aero.increments.add import integrate_with
+from spaceplane.aero.increments.settings import Air
 from spaceplane.analysis.flight import fly
 from spaceplane.analysis.found import Analysis, remarks
 from spaceplane.analysis.settings import AnalyseSettings
@@ -46,13 +47,14 @@ def analyse(vehicle: Vehicle, settings: AnalyseSettings | None = None, progress:
     plan = plan_conditions(list(points), settings.steps, symmetric, reference=vehicle.reference)
     body = solve_vehicle(vehicle, settings.deflections, plan.conditions, settings.mesh, settings.flow, say, "base")
     say("coefficients", 0, 1, "")
-    coefficients = integrate(body.solution, vehicle.reference)
+    air = Air.of([points[i].ambient for i in plan.point])
+    coefficients = integrate_with(body.solution, vehicle.reference, settings.increments, air)
     base = coefficients.isel(condition=[p.base for p in plan.points])
     derivatives = differentiate(coefficients, plan)
     runs: tuple[ControlRun, ...] = ()
     if settings.controls:
         wall_cell = float(body.solution.mesh.record["wall_cell_m"])
-        runs = _control_runs(vehicle, settings, plan, wall_cell, say)
+        runs = _control_runs(vehicle, settings, plan, wall_cell, Air.of([p.ambient for p in points]), say)
         slopes = slopes_of(base, runs, symmetric)
         derivatives = xr.merge([derivatives, slopes], join="exact")
     say("flight dynamics", 0, 1, "")
@@ -75,9 +77,9 @@ def analyse(vehicle: Vehicle, settings: AnalyseSettings | None = None, progress:
 
 
 def _control_runs(
-    vehicle: Vehicle, settings: AnalyseSettings, plan: ConditionPlan, wall_cell: float, say: Progress
+    vehicle: Vehicle, settings: AnalyseSettings, plan: ConditionPlan, wall_cell: float, air: Air, say: Progress
 ) -> tuple[ControlRun, ...]:
-    """The base conditions on bodies with one surface moved, on the wall cell, m, of the base mesh."""
+    """The base conditions on bodies with one surface moved, on the wall cell, m, of the base mesh and in its air."""
     rows = np.array([p.base for p in plan.points])
     return control_runs(
         vehicle,
@@ -88,6 +90,8 @@ def _control_runs(
         settings.flow,
         settings.steps.two_step_sizes,
         say,
+        settings.increments,
+        air,
     )
 
 

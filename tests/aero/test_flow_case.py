@@ -4,11 +4,15 @@ import json
 import math
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from spaceplane.aero import flow_case
 from spaceplane.aero.flow_case import records, run_flow
+from spaceplane.aero.increments.friction_laws import LAMINAR, local_friction
+from spaceplane.aero.increments.settings import IncrementSettings
 from spaceplane.aero.integrate import integrate
+from spaceplane.environment.atmosphere import sutherland_viscosity, us1976
 from spaceplane.errors import InputError
 from spaceplane.flow.settings import FlowSettings
 from spaceplane.mesh.settings import MeshSettings
@@ -64,6 +68,41 @@ def test_a_cone_that_pitches_about_its_apex_resists():
     assert -2.0 * 1.686 * q / 3.0 < turning["Cm"] < -0.4 * 1.686 * q / 3.0
     for name in ("CY", "Cl", "Cn"):
         assert abs(turning[name]) < 1e-4
+
+
+def test_increments_of_a_cone_are_listed_by_source(monkeypatch, case):
+    """Laminar friction of the 20 deg cone by hand: 2/sqrt(3) times that of a plate of its slant length, plus edges."""
+    monkeypatch.setattr(flow_case, "generate", lambda *_: case.mesh)
+    monkeypatch.setattr(flow_case, "solve", lambda *_: case.solution)
+    increments = IncrementSettings(friction="laminar", base="correlation")
+    args = [3.0], [0.0, ALPHA], [0.0, ALPHA], REFERENCE, MESH, FlowSettings()
+    with pytest.raises(InputError, match="friction = 'laminar': needs the altitude"):
+        run_flow(cone(HALF_ANGLE), *args, increments=increments)
+    ambient = us1976(25_000.0)
+    found = run_flow(cone(HALF_ANGLE), *args, increments=increments, ambient=ambient).records
+    assert set(found[0]) == KEYS | {"by_source"}
+    for record, plain in zip(found, case.records, strict=True):
+        assert record["by_source"]["inviscid"]["CD"] == pytest.approx(plain["CD"])
+        for name in ("CL", "CD", "CY", "Cl", "Cm", "Cn", "CA", "CN"):
+            total = sum(source[name] for source in record["by_source"].values())
+            assert total == pytest.approx(record[name], abs=1e-12)
+    # Taylor-Maccoll at Mach 3, 20 deg: surface Cp 0.28427, shock at 29.615 deg.
+    cp, normal = 0.28427, 9.0 * math.sin(math.radians(29.615)) ** 2
+    pressure, behind = 1.0 + 6.3 * cp, (7.0 * normal - 1.0) / 6.0
+    shocked = behind * (normal + 5.0) / (6.0 * normal)
+    temperature = shocked * (pressure / behind) ** (2.0 / 7.0)
+    mach = math.sqrt(5.0 * (2.8 / temperature - 1.0))
+    slant = 1.0 / math.cos(HALF_ANGLE)
+    edge = us1976(25_000.0).temperature * temperature
+    unit = pressure / temperature * mach * math.sqrt(temperature) * ambient.speed_of_sound * ambient.density
+    reynolds = unit * slant / sutherland_viscosity(edge)
+    friction = local_friction(LAMINAR, np.array([reynolds]), np.array([mach]), np.array([edge]), None)[0]
+    mean = friction * math.sqrt(3.0) * 4.0 / 3.0 * pressure * mach**2 / 9.0
+    wetted = math.pi * math.tan(HALF_ANGLE) * slant / REFERENCE.area
+    exact = mean * wetted * math.cos(HALF_ANGLE)
+    assert found[0]["by_source"]["friction"]["CA"] == pytest.approx(exact, rel=0.1)
+    # -0.25 / 3 on the base of the reference area in place of the computed pressure
+    assert found[0]["CA_base"] == pytest.approx(0.25 / 3.0, rel=0.02)
 
 
 def test_failed_conditions_have_no_values(case):

@@ -92,3 +92,38 @@ def test_netcdf_gives_the_same_numbers(tmp_path):
         assert float(data.Cm_alpha.sel(flight_point="Mach 1.5", part="nose")) == record["by_part"]["nose"]
         assert data.Cm_alpha.attrs["units"] == "1/rad"
         assert data.mach.values == pytest.approx([0.8, 1.5, 2.5])
+
+
+def with_sources() -> dict:
+    result = example_result()
+    for p in result["flight_points"]:
+        zero = dict.fromkeys(("CL", "CD", "CY", "Cl", "Cm", "Cn", "CA", "CN"), 0.0)
+        p["coefficients_by_source"] = {
+            "inviscid": zero | {"CD": 0.19, "CA": 0.08},
+            "friction": zero | {"CD": 0.01, "CA": 0.01},
+        }
+    result["settings"]["increments"] = {"friction": "turbulent", "base": "inviscid", "transition_reynolds": 1e6}
+    return result
+
+
+def test_sources_of_coefficients_are_columns_of_the_total(tmp_path):
+    paths = {path.name: path for path in write_csv(with_sources(), tmp_path)}
+    with paths["coefficients.csv"].open(encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    assert [row["CD_from_friction"] for row in rows if row["part"] == "total"] == ["0.01"] * 3
+    assert {row["CD_from_friction"] for row in rows if row["part"] != "total"} == {""}
+    write_csv(example_result(), tmp_path)
+    assert "_from_" not in paths["coefficients.csv"].read_text(encoding="utf-8")
+
+
+def test_sources_of_coefficients_stand_below_their_sum():
+    from spaceplane.report.sections import increments_text, whole
+
+    shown = [(str(row["symbol"]), row["what"]) for row in whole(with_sources())["coefficient_rows"]]
+    drag = next(n for n, (_, what) in enumerate(shown) if what.startswith("drag"))
+    assert [what for _, what in shown[drag + 1 : drag + 3]] == ["… of the inviscid flow", "… of skin friction"]
+    assert shown[drag + 3][1].startswith("side force")  # zero by symmetry: no sources of it
+    said = increments_text(with_sources())
+    assert "turbulent skin friction (adiabatic wall, laminar below a Reynolds number of" in said
+    assert increments_text(example_result()) == ""
+    assert not any("of skin friction" in row["what"] for row in whole(example_result())["coefficient_rows"])

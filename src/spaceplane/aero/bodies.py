@@ -10,7 +10,9 @@ from dataclasses import dataclass, replace
 import xarray as xr
 
 from spaceplane.aero.derivatives import Move, by_symmetry, control_derivatives
-from spaceplane.aero.integrate import integrate, wetted_area
+from spaceplane.aero.increments.add import integrate_with
+from spaceplane.aero.increments.settings import Air, IncrementSettings
+from spaceplane.aero.integrate import wetted_area
 from spaceplane.flow.settings import FlowSettings
 from spaceplane.flow.solution import ConvergenceRecord, FlowConditions, Solution
 from spaceplane.flow.solve import solve
@@ -46,7 +48,7 @@ class ControlRun:
         surface: the control surface.
         step: how far it was moved, rad.
         deflections: of all surfaces.
-        coefficients: see `integrate`; one condition per flight point.
+        coefficients: see `integrate_with`; one condition per flight point.
         records: [flight point] how it converged.
         cells: of its mesh.
         force_scale: wetted over reference area, which takes the records' forces to the reference area.
@@ -124,6 +126,8 @@ def control_runs(
     flow_settings: FlowSettings,
     two_step_sizes: bool = False,
     progress: Progress | None = None,
+    increments: IncrementSettings | None = None,
+    air: Air | None = None,
 ) -> tuple[ControlRun, ...]:
     """Solve the conditions on bodies with one surface moved by `step`, rad, or by minus that where limits ask for it.
 
@@ -137,6 +141,8 @@ def control_runs(
         conditions: base condition of each flight point.
         mesh_settings, flow_settings, progress: as for `solve_vehicle`.
         two_step_sizes: two runs for each surface.
+        increments: viscous increments; none when None.
+        air: of each condition, for skin friction.
 
     Raises:
         InputError: as `solve_vehicle`.
@@ -159,7 +165,7 @@ def control_runs(
                     surface,
                     size,
                     moved,
-                    integrate(solution, vehicle.reference),
+                    integrate_with(solution, vehicle.reference, increments or IncrementSettings(), air),
                     solution.records,
                     solution.mesh.cells,
                     wetted_area(solution.mesh) / vehicle.reference.area,

@@ -9,7 +9,10 @@ import numpy as np
 import xarray as xr
 
 from spaceplane.aero.conditions import product
-from spaceplane.aero.integrate import COEFFICIENTS, PRESSURES, TOTAL, Reference, integrate
+from spaceplane.aero.increments.add import WITH_SOURCES, integrate_with
+from spaceplane.aero.increments.settings import Air, IncrementSettings
+from spaceplane.aero.integrate import BY_SOURCE, COEFFICIENTS, PRESSURES, TOTAL, Reference
+from spaceplane.environment.atmosphere import Ambient
 from spaceplane.errors import InputError
 from spaceplane.flow.settings import FlowSettings
 from spaceplane.flow.solution import Solution
@@ -31,7 +34,7 @@ class FlowCase:
 
     Attributes:
         records: one JSON-ready dict per condition, see `records`.
-        coefficients: the same by part, see `integrate`.
+        coefficients: the same by part, see `integrate_with`.
         mesh: the mesh.
         solution: the flow.
     """
@@ -52,6 +55,8 @@ def run_flow(
     flow_settings: FlowSettings,
     progress: Progress | None = None,
     rates: tuple[float, float, float] = (0.0, 0.0, 0.0),
+    increments: IncrementSettings | None = None,
+    ambient: Ambient | None = None,
 ) -> FlowCase:
     """Mesh a body and solve every combination of Mach number, angle of attack and sideslip in one ensemble.
 
@@ -66,10 +71,12 @@ def run_flow(
         progress: passed on to the solver.
         rates: steady roll, pitch and yaw rate about the moment centre in every condition, rad/s on the speed of sound
             in m/s, 1/m.
+        increments: viscous increments; none when None.
+        ambient: undisturbed air of every condition, for skin friction.
 
     Raises:
-        InputError: a bad condition or body, or rates that move some point of the body at more than half the flight
-            speed.
+        InputError: a bad condition or body, rates that move some point of the body at more than half the flight
+            speed, or skin friction without air.
     """
     conditions = product(list(machs), list(alphas), list(betas))
     conditions = replace(conditions, rates=np.tile(rates, (len(conditions), 1)), center=reference.moment_center)
@@ -79,11 +86,15 @@ def run_flow(
         raise InputError(
             f"rates: a point of the body would move at {share:.2g} of the flight speed, at most {FASTEST_POINT:g}"
         )
+    air = None if ambient is None else Air.of([ambient] * len(conditions))
+    increments = increments or IncrementSettings()
+    if increments.friction != "off" and air is None:
+        raise InputError(f"friction = {increments.friction!r}: needs the altitude")
     if progress:
         progress("mesh", 0, 1, "")
     mesh = generate(body, mesh_settings, progress)
     solution = solve(mesh, conditions, flow_settings, progress)
-    coefficients = integrate(solution, reference)
+    coefficients = integrate_with(solution, reference, increments, air)
     return FlowCase(records(solution, coefficients), coefficients, mesh, solution)
 
 
@@ -92,8 +103,10 @@ def records(solution: Solution, coefficients: xr.Dataset) -> list[dict]:
 
     Keys: mach, alpha_deg, beta_deg, p_hat, q_hat, r_hat (reduced rates), COEFFICIENTS, PRESSURES, converged,
     verdict, residual_drop, iterations, seconds, cells, reason. `seconds` is the wall time of the whole ensemble
-    divided by its conditions. Values of a failed condition are None.
+    divided by its conditions. Values of a failed condition are None. With viscous increments, `by_source` holds what
+    "inviscid", "friction" and "base" add to the coefficients.
     """
+    totals = coefficients.sel(part=TOTAL)
     seconds = total_seconds(solution) / max(len(solution.conditions), 1)
     return [
         condition_record(
@@ -106,6 +119,7 @@ def records(solution: Solution, coefficients: xr.Dataset) -> list[dict]:
             seconds=round(seconds, 3),
             cells=solution.mesh.cells,
             reason=record.reason,
+            **_by_source(totals, i),
         )
         for i, record in enumerate(solution.records)
     ]
@@ -123,6 +137,16 @@ def condition_record(coefficients: xr.Dataset, index: int, **found: object) -> d
         **{name: finite(totals[name].item()) for name in (*COEFFICIENTS, *PRESSURES)},
         **found,
     }
+
+
+def _by_source(totals: xr.Dataset, condition: int) -> dict:
+    if "source" not in totals.coords:
+        return {}
+    shares = {
+        str(source): {name: finite(totals[f"{name}{BY_SOURCE}"].values[condition, column]) for name in WITH_SOURCES}
+        for column, source in enumerate(totals.source.values)
+    }
+    return {"by_source": shares}
 
 
 def total_seconds(solution: Solution) -> float:

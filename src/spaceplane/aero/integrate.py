@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Protocol
 
 import numpy as np
 import xarray as xr
 
-from spaceplane.aero.axes import FORCES_AND_MOMENTS, geometry_to_body, wind_axes
+from spaceplane.aero.axes import FORCES_AND_MOMENTS, wind_axes
+from spaceplane.aero.loads import Reference, coefficients_of
 from spaceplane.flow.solution import ConvergenceRecord, FlowConditions, Solution
 from spaceplane.mesh.mesh import Mesh
 
@@ -20,6 +20,8 @@ WITH_SPREAD = (*FORCES_AND_MOMENTS, "CA", "CN")
 """Coefficients whose wandering is known or estimated, see `integrate`."""
 PRESSURES = ("Cp_max", "Cp_min")
 LATERAL = ("CY", "Cl", "Cn")
+BY_SOURCE = "_by_source"
+"""Ending of the variables that hold a coefficient by where it comes from, see `spaceplane.aero.increments`."""
 
 _WIND = "wind axes: drag along the free stream, side force right, lift in the plane of symmetry"
 _BODY = "body axes: x forward, y right, z down"
@@ -36,20 +38,11 @@ DESCRIPTION = {
     "Cn": ("yawing-moment coefficient", _BODY, "nose right", _ROLL_YAW),
     "CA": ("axial-force coefficient", _GEOMETRY, "aft", _FORCE),
     "CN": ("normal-force coefficient", _GEOMETRY, "up", _FORCE),
-    "CA_forebody": ("axial force on wall that faces upstream (n_x < 0)", _GEOMETRY, "aft", _FORCE),
-    "CA_base": ("axial force on wall that faces downstream (n_x >= 0)", _GEOMETRY, "aft", _FORCE),
+    "CA_forebody": ("axial pressure force on wall that faces upstream (n_x < 0)", _GEOMETRY, "aft", _FORCE),
+    "CA_base": ("axial pressure force on wall that faces downstream (n_x >= 0)", _GEOMETRY, "aft", _FORCE),
     "Cp_max": ("highest pressure coefficient on the wall", "none", "above free-stream pressure", "q_inf"),
     "Cp_min": ("lowest pressure coefficient on the wall", "none", "above free-stream pressure", "q_inf"),
 }
-
-
-class Reference(Protocol):
-    """Reference lengths, SI: area m2, chord m, span m, moment_center [xyz] m in geometry axes."""
-
-    area: float
-    chord: float
-    span: float
-    moment_center: tuple[float, float, float]
 
 
 @dataclass(frozen=True)
@@ -130,23 +123,9 @@ def coefficients(
     """
     pieces, cp = _sorted(pieces, cp)
     force, moment, forebody = _loads(pieces, cp, np.asarray(reference.moment_center, dtype=float))
-    force = force / reference.area
+    values = coefficients_of(force, moment, conditions, reference)
     forebody = forebody / reference.area
-    lengths = np.array([reference.span, reference.chord, reference.span])
-    moment = geometry_to_body(moment) / (reference.area * lengths)
-    axes = wind_axes(conditions.alpha, conditions.beta)
-    values = {
-        "CL": np.einsum("cpx,cx->cp", force, axes.lift),
-        "CD": np.einsum("cpx,cx->cp", force, axes.drag),
-        "CY": np.einsum("cpx,cx->cp", force, axes.side),
-        "Cl": moment[..., 0],
-        "Cm": moment[..., 1],
-        "Cn": moment[..., 2],
-        "CA": force[..., 0],
-        "CN": force[..., 2],
-        "CA_forebody": forebody,
-        "CA_base": force[..., 0] - forebody,
-    }
+    values |= {"CA_forebody": forebody, "CA_base": values["CA"] - forebody}
     values["Cp_max"], values["Cp_min"] = _extrema(pieces, cp)
     values |= {f"{name}_spread": value for name, value in spread.items()}
     return _dataset(conditions, judgement, reference, values, (TOTAL, *pieces.part_names))
@@ -285,7 +264,8 @@ def mirrored(coefficients: xr.Dataset) -> xr.Dataset:
     names = [mirrored_name(str(part)) for part in coefficients.part.values]
     result = coefficients.assign_coords(part=names).sel(part=coefficients.part.values)
     result = result.assign_coords({name: -coefficients[name] for name in ("beta", "p_hat", "r_hat")})
-    return result.assign({name: result[name].copy(data=-result[name].values) for name in LATERAL})
+    lateral = [name for name in (*LATERAL, *(f"{n}{BY_SOURCE}" for n in LATERAL)) if name in result]
+    return result.assign({name: result[name].copy(data=-result[name].values) for name in lateral})
 
 
 def mirrored_name(part: str) -> str:

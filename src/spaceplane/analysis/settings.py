@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from spaceplane.aero.conditions import DerivativeSteps
+from spaceplane.aero.increments.settings import IncrementSettings
 from spaceplane.dynamics.flightpoint import TAEM_MACH, FlightPoint, taem_point
 from spaceplane.dynamics.linearise import FORMS
 from spaceplane.errors import InputError
@@ -48,7 +49,21 @@ def _corners(name: str, value: Any) -> tuple[tuple[float, ...], tuple[float, ...
     return tuple(value[0]), tuple(value[1])
 
 
-READERS = {"mesh.boxes": _boxes, "mesh.domain": _corners, "mesh.fine_parts": _parts}
+def _word(name: str, value: Any) -> str:
+    """A word; YAML reads a bare `off` as False."""
+    if value is False:
+        return "off"
+    if not isinstance(value, str):
+        raise InputError(f"{name} = {value!r}: a word is needed")
+    return value
+
+
+READERS = {
+    "mesh.boxes": _boxes,
+    "mesh.domain": _corners,
+    "mesh.fine_parts": _parts,
+    "increments.friction": _word,
+}
 """Settings that are not numbers or words, and how each is read."""
 
 
@@ -68,6 +83,7 @@ class AnalyseSettings:
         steps: steps of the stability derivatives.
         mesh: how to mesh; the default, a wall cell of 0.25 m, is meant to answer in about two minutes on two cores.
         flow: how to solve.
+        increments: viscous increments over the inviscid coefficients; none by default.
         form: form of the linear model.
         vehicle_class: class of MIL-F-8785C.
         category: flight phase category of MIL-F-8785C.
@@ -84,6 +100,7 @@ class AnalyseSettings:
     steps: DerivativeSteps = field(default_factory=DerivativeSteps)
     mesh: MeshSettings = field(default_factory=lambda: MeshSettings(wall_cell=0.25))
     flow: FlowSettings = field(default_factory=FlowSettings)
+    increments: IncrementSettings = field(default_factory=IncrementSettings)
     form: str = "rigid-body"
     vehicle_class: str = "III"
     category: str = "B"

@@ -56,6 +56,11 @@ def analyse(
         bool, typer.Option(help="Derivatives of the control surfaces (a body and mesh more for each).")
     ] = True,
     two_steps: Annotated[bool, typer.Option("--two-steps", help="Two step sizes for each derivative.")] = False,
+    friction: options.Friction = "off",
+    base: options.Base = "inviscid",
+    wall_temperature: options.WallTemperature = None,
+    emissivity: options.Emissivity = None,
+    transition_reynolds: options.TransitionReynolds = None,
     allow_outside_limits: options.AllowOutside = False,
     json_file: options.JsonFile = None,
 ) -> int:
@@ -67,10 +72,17 @@ def analyse(
     machs = mach_numbers(mach)
     folder = out or Path("out") / re.sub(r"[^\w.-]+", "-", Path(vehicle).stem if "/" in vehicle else vehicle)
     subject = options.load_vehicle(vehicle, changes, allow_outside_limits)
+    increments = options.increment_settings(friction, base, wall_temperature, emissivity, transition_reynolds)
     settings = _settings(machs, alpha, deflect, allow_outside_limits, cell, cells, precision)
     steps = replace(settings.steps, two_step_sizes=True) if two_steps else settings.steps
     settings = replace(
-        settings, form=form, vehicle_class=vehicle_class, category=category, controls=controls, steps=steps
+        settings,
+        form=form,
+        vehicle_class=vehicle_class,
+        category=category,
+        controls=controls,
+        steps=steps,
+        increments=increments,
     )
     writable_folder(folder, "--out")
     writable_file(json_file, "--json")

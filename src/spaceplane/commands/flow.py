@@ -25,6 +25,7 @@ from spaceplane.files import renamed_when_done
 
 if TYPE_CHECKING:
     from spaceplane.aero.flow_case import FlowCase
+    from spaceplane.environment.atmosphere import Ambient
     from spaceplane.vehicle.properties import ReferenceLengths
 
 EULER = "euler"
@@ -60,10 +61,6 @@ def flow(
         str,
         typer.Option("--rates", metavar="p,q,r", help="Steady roll, pitch and yaw rate about the moment point, rad/s."),
     ] = "0,0,0",
-    altitude: Annotated[
-        str,
-        typer.Option("--altitude", metavar="M", help="Altitude whose speed of sound turns rates into Mach numbers."),
-    ] = "0",
     cell: options.Cell = None,
     cells: options.Cells = None,
     domain: Annotated[
@@ -71,6 +68,14 @@ def flow(
         typer.Option("--domain", metavar="x,y,z,x,y,z", help="Lower and upper corner of the air to mesh, metres."),
     ] = None,
     precision: options.Precision = "fp32",
+    friction: options.Friction = "off",
+    base: options.Base = "inviscid",
+    wall_temperature: options.WallTemperature = None,
+    emissivity: options.Emissivity = None,
+    transition_reynolds: options.TransitionReynolds = None,
+    altitude: Annotated[
+        str | None, typer.Option("--altitude", metavar="M", help="Altitude of the air, for friction and rates.")
+    ] = None,
     json_file: options.JsonFile = None,
     vtu: Annotated[Path | None, typer.Option("--vtu", metavar="FILE", help="Write the flow for ParaView.")] = None,
     vtp: Annotated[
@@ -80,14 +85,12 @@ def flow(
     """Inviscid flow about a body: every Mach number with every angle, all on one mesh in one run.
 
     With a --method other than euler: local inclination, without a mesh.
+    Skin friction and base pressure are added if asked for.
 
     Exit code 0 when every condition converged, 1 when one did not, 2 for bad input.
     """
     machs, alphas, betas = mach_numbers(mach), angles("--alpha", alpha), angles("--beta", beta)
-    from spaceplane.environment.atmosphere import us1976
-
-    sound = us1976(number("--altitude", altitude, "m")).speed_of_sound
-    turning = tuple(rate / sound for rate in numbers("--rates", rates, "rad/s", 3))
+    turning = numbers("--rates", rates, "rad/s", 3)
     lengths = {
         "area": positive("--area", area, "m2"),
         "chord": positive("--length", length, "m"),
@@ -95,6 +98,8 @@ def flow(
     }
     center = tuple(numbers("--moment-center", moment_center, "m", 3))
     solver_precision = options.precision(precision)
+    increments = options.increment_settings(friction, base, wall_temperature, emissivity, transition_reynolds)
+    ambient = _ambient(altitude, friction, any(turning))
     existing_file(body, "an STL file")
     writable_file(json_file, "--json")
     writable_file(vtu, "--vtu", (".vtu",))
@@ -104,7 +109,10 @@ def flow(
     reference = ReferenceLengths(**lengths, moment_center=center)
     if method != EULER:
         given = {"--cell": cell, "--cells": cells, "--domain": domain, "--vtu": vtu, "--vtp": vtp}
-        _refuse_euler_options(method, given | ({"--rates": rates} if any(turning) else {}), solver_precision)
+        given |= {"--rates": rates} if any(turning) else {}
+        given |= {"--friction": friction} if friction != "off" else {}
+        given |= {"--base": base} if base != "inviscid" else {}
+        _refuse_euler_options(method, given, solver_precision)
         return _inclination(body, method, (machs, alphas, betas), reference, json_file)
     from spaceplane.flow.settings import FlowSettings
     from spaceplane.mesh.settings import MeshSettings
@@ -120,7 +128,8 @@ def flow(
 
     with progress_bar() as tell:
         tell("mesh", 0, 1, "")
-        case = run_flow(surface, machs, alphas, betas, reference, mesh, settings, tell, turning)
+        on_sound = tuple(rate / ambient.speed_of_sound for rate in turning)
+        case = run_flow(surface, machs, alphas, betas, reference, mesh, settings, tell, on_sound, increments, ambient)
     _write(case, surface, vtu, vtp)
     write_json(case.records, json_file)
     for warning in case.mesh.record.get("warnings") or ():
@@ -134,6 +143,17 @@ def flow(
         where = f"Mach {r['mach']:g}, alpha {r['alpha_deg']:g} deg, beta {r['beta_deg']:g} deg"
         typer.echo(f"not good: {where}: {r['verdict']}: {r['reason']}", err=True)
     return 1 if bad else 0
+
+
+def _ambient(altitude: str | None, friction: str, turns: bool) -> Ambient:
+    """The air at the altitude, which friction and rates need and nothing else does; sea level for rates without one."""
+    if altitude is None and friction != "off":
+        raise InputError(f"--altitude: missing, --friction {friction} needs it")
+    if altitude is not None and friction == "off" and not turns:
+        raise InputError(f"--altitude: {altitude}, goes with --friction or --rates")
+    from spaceplane.environment.atmosphere import us1976
+
+    return us1976(0.0 if altitude is None else number("--altitude", altitude, "m"))
 
 
 def _refuse_euler_options(method: str, given: dict[str, object], precision: str) -> None:

@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from spaceplane.commands.arguments import assignments, positive
+from spaceplane.commands.arguments import assignments, number, positive
 from spaceplane.errors import InputError
 
 if TYPE_CHECKING:
+    from spaceplane.aero.increments.settings import IncrementSettings
     from spaceplane.mesh.settings import MeshSettings
     from spaceplane.vehicle.controls import ControlDeflections
     from spaceplane.vehicle.presets import Vehicle
@@ -41,6 +42,28 @@ Precision = Annotated[
 ]
 JsonFile = Annotated[
     Path | None, typer.Option("--json", metavar="FILE", help="Write the result as JSON; - for standard output.")
+]
+
+Friction = Annotated[
+    str, typer.Option("--friction", metavar="off|laminar|turbulent", help="Add skin friction to the coefficients.")
+]
+Base = Annotated[
+    str,
+    typer.Option("--base", metavar="inviscid|correlation", help="Pressure of blunt bases: computed, or correlated."),
+]
+WallTemperature = Annotated[
+    str | None,
+    typer.Option("--wall-temperature", metavar="K", help="Wall temperature for the friction; adiabatic by default."),
+]
+Emissivity = Annotated[
+    str | None,
+    typer.Option(
+        "--emissivity", metavar="E", help="Wall that radiates the heat of friction away, instead of adiabatic."
+    ),
+]
+TransitionReynolds = Annotated[
+    str | None,
+    typer.Option("--transition-reynolds", metavar="RE", help="With turbulent friction: laminar below this number."),
 ]
 
 PRECISIONS = {"fp32": "single", "single": "single", "fp64": "double", "double": "double"}
@@ -85,6 +108,22 @@ def mesh_settings(cell: str | None, cells: str | None, default: MeshSettings) ->
     if cells is not None:
         return replace(default, target_cells=round(positive("--cells", cells, "cells")))
     return default
+
+
+def increment_settings(
+    friction: str, base: str, wall_temperature: str | None, emissivity: str | None, transition_reynolds: str | None
+) -> IncrementSettings:
+    """Settings of the viscous increments.
+
+    Raises:
+        InputError: an unknown word, a number that is not positive, or one that goes with nothing else given.
+    """
+    kelvin = None if wall_temperature is None else positive("--wall-temperature", wall_temperature, "K")
+    reynolds = None if transition_reynolds is None else number("--transition-reynolds", transition_reynolds)
+    radiating = None if emissivity is None else number("--emissivity", emissivity)
+    from spaceplane.aero.increments.settings import IncrementSettings
+
+    return IncrementSettings(friction, base, kelvin, radiating, reynolds)
 
 
 def precision(text: str) -> str:

@@ -91,6 +91,11 @@ def from_pressure_temperature(altitude_m: float, pressure: float, temperature: f
     return _ambient(float(altitude_m), float(pressure), float(temperature), 1.0, "given pressure and temperature")
 
 
+def sutherland_viscosity(temperature: float) -> float:
+    """Dynamic viscosity of air, Pa s, at a temperature, K, also of an array (equation 51 of the standard)."""
+    return c.SUTHERLAND_BETA * temperature**1.5 / (temperature + c.SUTHERLAND_TEMPERATURE)
+
+
 def _layered(height: float) -> tuple[float, float]:
     """Molecular-scale temperature, K, and pressure, Pa, at a geopotential height, m' (equations 23, 33a and 33b)."""
     temperature, pressure = _SEA_LEVEL_TEMPERATURE, _SEA_LEVEL_PRESSURE
@@ -117,7 +122,7 @@ def _ambient(altitude: float, pressure: float, molecular_temperature: float, mas
         temperature=temperature,
         density=pressure / (c.GAS_CONSTANT_AIR * molecular_temperature),
         speed_of_sound=math.sqrt(c.RATIO_OF_SPECIFIC_HEATS * c.GAS_CONSTANT_AIR * molecular_temperature),
-        viscosity=c.SUTHERLAND_BETA * temperature**1.5 / (temperature + c.SUTHERLAND_TEMPERATURE),
+        viscosity=sutherland_viscosity(temperature),
         mean_free_path=c.UNIVERSAL_GAS_CONSTANT
         * temperature
         / (math.sqrt(2.0) * math.pi * c.AVOGADRO * c.COLLISION_DIAMETER**2 * pressure),

@@ -12,11 +12,13 @@ GAS_CONSTANT_AIR = UNIVERSAL_GAS_CONSTANT / MOLAR_MASS_AIR  # 287.053 J/(kg K)
 RATIO_OF_SPECIFIC_HEATS = 1.4
 SUTHERLAND_BETA = 1.458e-6  # kg/(s m K^0.5)
 SUTHERLAND_TEMPERATURE = 110.4  # K
+PRANDTL_NUMBER_AIR = 0.72  # of air as a perfect gas
 COLLISION_DIAMETER = 3.65e-10  # m, effective, for the mean free path
 
 # CODATA 2018 (exact), for the equilibrium-air model that works from molecular data.
 BOLTZMANN = 1.380649e-23  # J/K
 PLANCK = 6.62607015e-34  # J s
+STEFAN_BOLTZMANN = 5.670374419e-8  # W/(m2 K4)
 
 
 def gravity(radius: float) -> float:

@@ -10,7 +10,8 @@ import xarray as xr
 from spaceplane import __version__
 from spaceplane.aero.axes import FORCES_AND_MOMENTS
 from spaceplane.aero.conditions import ConditionPlan
-from spaceplane.aero.integrate import COEFFICIENTS, PRESSURES, TOTAL, WITH_SPREAD, wetted_area
+from spaceplane.aero.increments.add import INVISCID, WITH_SOURCES
+from spaceplane.aero.integrate import BY_SOURCE, COEFFICIENTS, PRESSURES, TOTAL, WITH_SPREAD, wetted_area
 from spaceplane.analysis.flight import PointAnalysis
 from spaceplane.analysis.found import Analysis
 from spaceplane.dynamics.modes import to_record as mode_record
@@ -103,6 +104,7 @@ def flight_point(analysis: Analysis, index: int) -> dict:
         },
         "coefficients": coefficients,
         "coefficient_errors": {name: float(totals[f"{name}_spread"]) for name in WITH_SPREAD},
+        "coefficients_by_source": coefficients_by_source(totals),
         "coefficients_by_part": coefficients_by_part(analysis.coefficients, analysis.plan.points[index].base),
         "derivatives": derivatives(analysis.derivatives, index),
         "convergence": convergence(analysis, index),
@@ -117,6 +119,20 @@ def coefficients_by_part(coefficients: xr.Dataset, condition: int) -> dict:
         str(part): {name: float(at[name].sel(part=part)) for name in FORCES_AND_MOMENTS}
         for part in at.part.values
         if part != TOTAL
+    }
+
+
+def coefficients_by_source(totals: xr.Dataset) -> dict:
+    """Source ("inviscid", "friction", "base") to coefficient to value in total at one condition.
+
+    Args:
+        totals: coefficients of the whole vehicle at one condition; without increments all is inviscid.
+    """
+    if "source" not in totals.coords:
+        return {INVISCID: {name: float(totals[name]) for name in WITH_SOURCES}}
+    return {
+        str(source): {name: float(totals[f"{name}{BY_SOURCE}"].sel(source=source)) for name in WITH_SOURCES}
+        for source in totals.source.values
     }
 
 

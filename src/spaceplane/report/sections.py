@@ -8,7 +8,7 @@ from markupsafe import Markup
 
 from spaceplane import __version__
 from spaceplane.report.flight_point import level_css, point
-from spaceplane.report.names import COEFFICIENTS, meaning, split_derivative, stability, symbol, words
+from spaceplane.report.names import COEFFICIENTS, SOURCES, meaning, split_derivative, stability, symbol, words
 from spaceplane.report.numbers import Measured, duration, fixed, grouped, is_number, measured, number
 from spaceplane.report.plots import POINT_COLOURS, eigenvalues_together, range_bar
 
@@ -53,6 +53,7 @@ def whole(result: dict) -> dict:
         "warnings": warnings(result),
         "flight_rows": _flight_rows(points),
         "coefficient_rows": _coefficient_rows(points),
+        "increments": increments_text(result),
         "derivative_groups": _derivative_groups(points),
         "point_colours": POINT_COLOURS,
         "together": Markup(eigenvalues_together(points)),
@@ -168,6 +169,37 @@ def _coefficient_rows(points: list[dict]) -> list[dict]:
             text = f"{what} ({axes})" if axes else what
             cells = [_coefficient(v, e.get(name)) for v, e in zip(values, errors, strict=True)]
             rows.append({"symbol": Markup(symbol(name)), "what": text, "cells": cells})
+            rows += _source_rows(name, points)
+    return rows
+
+
+def increments_text(result: dict) -> str:
+    """One sentence on the viscous increments in the coefficients; empty where there are none."""
+    settings = (result.get("settings") or {}).get("increments") or {}
+    friction, base = settings.get("friction", "off"), settings.get("base", "inviscid")
+    glow = settings.get("emissivity")
+    wall, transition = settings.get("wall_temperature_K"), settings.get("transition_reynolds")
+    pieces = []
+    if friction != "off":
+        at = f"wall at {number(wall, 4)} K" if is_number(wall) else "adiabatic wall"
+        at = f"radiating wall of emissivity {number(glow, 3)}" if is_number(glow) else at
+        onset = f", laminar below a Reynolds number of {number(transition, 3)}" if is_number(transition) else ""
+        pieces.append(f"{friction} skin friction ({at}{onset})")
+    if base != "inviscid":
+        pieces.append("base pressure by correlation")
+    return f"With {' and '.join(pieces)} over the inviscid flow; the parts are listed apart." if pieces else ""
+
+
+def _source_rows(name: str, points: list[dict]) -> list[dict]:
+    """What each source adds to a coefficient; no rows where all is inviscid or the coefficient is zero by symmetry."""
+    found = [p.get("coefficients_by_source") or {} for p in points]
+    sources = list(dict.fromkeys(source for f in found for source in f))
+    rows = []
+    for source in sources if len(sources) > 1 else ():
+        values = [(f.get(source) or {}).get(name) for f in found]
+        if any(is_number(v) and abs(v) >= 5e-6 for v in values):
+            cells = [_coefficient(v, None) for v in values]
+            rows.append({"symbol": "", "what": f"… {SOURCES.get(source, source)}", "cells": cells})
     return rows
 
 

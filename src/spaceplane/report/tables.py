@@ -23,13 +23,24 @@ CONDITION_KEYS = (
 
 
 def coefficient_rows(result: dict) -> list[dict]:
-    """A row for each flight point and part ("total" included), coefficients in columns."""
+    """A row for each flight point and part ("total" included), coefficients in columns.
+
+    With viscous increments, the total has columns such as CD_from_friction besides.
+    """
     rows = []
     for p in result["flight_points"]:
         conditions = {"flight_point": p["name"], **{k: p.get(k) for k in CONDITION_KEYS}}
-        rows.append(conditions | {"part": "total"} | (p.get("coefficients") or {}))
+        rows.append(conditions | {"part": "total"} | (p.get("coefficients") or {}) | _sources(p))
         rows += [conditions | {"part": part} | values for part, values in (p.get("coefficients_by_part") or {}).items()]
     return rows
+
+
+def _sources(point: dict) -> dict:
+    """What each source adds to each coefficient, such as CD_from_friction; none where all is inviscid."""
+    sources = point.get("coefficients_by_source") or {}
+    if len(sources) < 2:
+        return {}
+    return {f"{name}_from_{source}": v for source, values in sources.items() for name, v in values.items()}
 
 
 def derivative_rows(result: dict) -> list[dict]:
