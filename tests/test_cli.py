@@ -174,11 +174,11 @@ def test_unknown_choices(capfd, tmp_path, options):
     [
         (["--friction", "laminar", "--wall-temperature", "0"], "--wall-temperature"),
         (["--friction", "laminar", "--wall-temperature", "warm"], "--wall-temperature"),
-        (["--emissivity", "0.8"], "emissivity = 0.8: needs friction"),
+        (["--friction", "off", "--emissivity", "0.8"], "emissivity = 0.8: needs friction"),
         (["--friction", "laminar", "--emissivity", "2"], "emissivity = 2"),
         (["--friction", "laminar", "--emissivity", "dark"], "--emissivity"),
         (["--friction", "laminar", "--emissivity", "0.8", "--wall-temperature", "300"], "not both"),
-        (["--wall-temperature", "300"], "wall_temperature_K = 300: needs friction"),
+        (["--friction", "off", "--wall-temperature", "300"], "wall_temperature_K = 300: needs friction"),
         (["--friction", "turbulent", "--transition-reynolds", "-1"], "transition_reynolds = -1"),
         (["--friction", "turbulent", "--transition-reynolds", "x"], "--transition-reynolds"),
         (["--friction", "laminar", "--transition-reynolds", "1e6"], "needs friction turbulent"),
@@ -187,7 +187,7 @@ def test_unknown_choices(capfd, tmp_path, options):
 def test_bad_increments(capfd, tmp_path, options, naming):
     assert naming in refused(capfd, "analyse", "horus-2b", *options, "--out", tmp_path / "o", naming=naming[:20])
     body = tetrahedron(tmp_path / "t.stl")
-    altitude = ["--altitude", "20000"] if "--friction" in options else []
+    altitude = [] if "off" in options else ["--altitude", "20000"]
     refused(capfd, "flow", body, "--mach", 2, *FLOW, *options, *altitude, naming=naming)
 
 

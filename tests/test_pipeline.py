@@ -12,7 +12,7 @@ from spaceplane import pipeline
 from spaceplane.aero import bodies
 from spaceplane.aero.conditions import DerivativeSteps
 from spaceplane.aero.database import AeroDatabase
-from spaceplane.aero.increments.settings import IncrementSettings
+from spaceplane.aero.increments.settings import VISCOUS, IncrementSettings
 from spaceplane.errors import InputError
 from spaceplane.flow.freestream import direction
 from spaceplane.flow.solution import ConvergenceRecord, Solution
@@ -22,7 +22,8 @@ from spaceplane.report import record
 from spaceplane.vehicle.controls import CONTROLS, ControlDeflections
 from spaceplane.vehicle.presets import horus_2b
 
-SETTINGS = AnalyseSettings(mach=(1.5, 2.5), mesh=MeshSettings(wall_cell=0.6, far_field=1.0))
+INVISCID = IncrementSettings()
+SETTINGS = AnalyseSettings(mach=(1.5, 2.5), mesh=MeshSettings(wall_cell=0.6, far_field=1.0), increments=INVISCID)
 
 
 def newtonian(failing=(), oscillating=()):
@@ -279,7 +280,8 @@ def test_friction_grows_with_altitude(monkeypatch, analysis):
 
 
 def test_yaml_s_off_is_the_word():
-    assert AnalyseSettings.from_mapping({"increments": {"friction": False}}) == AnalyseSettings()
+    read = AnalyseSettings.from_mapping({"increments": {"friction": False}})
+    assert read.increments == IncrementSettings(base="correlation")
 
 
 @pytest.mark.parametrize(
@@ -297,7 +299,7 @@ def test_yaml_s_off_is_the_word():
             {"increments": IncrementSettings("turbulent", transition_reynolds=1e6, wall_temperature_K=400.0)},
             lambda r: r["coefficients"]["CD"],
         ),
-        ({"increments": IncrementSettings(base="correlation")}, lambda r: r["coefficients"]["CA_base"]),
+        ({"increments": IncrementSettings()}, lambda r: r["coefficients"]["CA_base"]),
         ({"steps": DerivativeSteps(alpha=0.05)}, lambda r: r["derivatives"]["CL_alpha"]["value"]),
         ({"steps": DerivativeSteps(beta=0.1)}, lambda r: r["derivatives"]["CY_beta"]["value"]),
         ({"steps": DerivativeSteps(mach_fraction=0.1)}, lambda r: r["derivatives"]["CL_M"]["step"]),
@@ -383,3 +385,13 @@ def test_flight_points_beyond_the_tables_need_altitude_and_alpha():
         AnalyseSettings(mach=(2.5, 2.5)).flight_points()
     two = AnalyseSettings(mach=(2.5, 2.5), alpha_deg=(10.0, 12.0)).flight_points()
     assert len({p.name for p in two}) == 2
+
+
+def test_the_command_line_asks_for_the_increments_of_the_settings():
+    import inspect
+
+    from spaceplane.commands.analyse import analyse as command
+
+    given = inspect.signature(command).parameters
+    assert (given["friction"].default, given["base"].default) == (VISCOUS.friction, VISCOUS.base)
+    assert AnalyseSettings().increments == VISCOUS

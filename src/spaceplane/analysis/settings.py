@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from spaceplane.aero.conditions import DerivativeSteps
-from spaceplane.aero.increments.settings import IncrementSettings
+from spaceplane.aero.increments.settings import VISCOUS, IncrementSettings
 from spaceplane.dynamics.flightpoint import TAEM_MACH, FlightPoint, taem_point
 from spaceplane.dynamics.linearise import FORMS
 from spaceplane.errors import InputError
@@ -83,7 +83,7 @@ class AnalyseSettings:
         steps: steps of the stability derivatives.
         mesh: how to mesh; the default, a wall cell of 0.25 m, is meant to answer in about two minutes on two cores.
         flow: how to solve.
-        increments: viscous increments over the inviscid coefficients; none by default.
+        increments: viscous increments over the inviscid coefficients: turbulent skin friction and a correlated base.
         form: form of the linear model.
         vehicle_class: class of MIL-F-8785C.
         category: flight phase category of MIL-F-8785C.
@@ -100,7 +100,7 @@ class AnalyseSettings:
     steps: DerivativeSteps = field(default_factory=DerivativeSteps)
     mesh: MeshSettings = field(default_factory=lambda: MeshSettings(wall_cell=0.25))
     flow: FlowSettings = field(default_factory=FlowSettings)
-    increments: IncrementSettings = field(default_factory=IncrementSettings)
+    increments: IncrementSettings = VISCOUS
     form: str = "rigid-body"
     vehicle_class: str = "III"
     category: str = "B"

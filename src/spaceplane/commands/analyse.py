@@ -56,8 +56,8 @@ def analyse(
         bool, typer.Option(help="Derivatives of the control surfaces (a body and mesh more for each).")
     ] = True,
     two_steps: Annotated[bool, typer.Option("--two-steps", help="Two step sizes for each derivative.")] = False,
-    friction: options.Friction = "off",
-    base: options.Base = "inviscid",
+    friction: options.Friction = "turbulent",
+    base: options.Base = "correlation",
     wall_temperature: options.WallTemperature = None,
     emissivity: options.Emissivity = None,
     transition_reynolds: options.TransitionReynolds = None,

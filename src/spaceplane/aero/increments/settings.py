@@ -18,7 +18,7 @@ BASE = ("inviscid", "correlation")
 
 @dataclass(frozen=True)
 class IncrementSettings:
-    """Viscous increments; both are off unless asked for.
+    """Viscous increments; off unless asked for. What a vehicle is analysed with is `VISCOUS`.
 
     Attributes:
         friction: "off", "laminar" or "turbulent" skin friction, see `skin_friction`.
@@ -58,6 +58,10 @@ class IncrementSettings:
     def sources(self) -> tuple[str, ...]:
         """Names of the increments that are on: "friction", "base", both or none."""
         return ("friction",) * (self.friction != "off") + ("base",) * (self.base != "inviscid")
+
+
+VISCOUS = IncrementSettings(friction="turbulent", base="correlation")
+"""What agrees best with the published drag of HORUS-2B, HB-2 and the sphere (docs, method)."""
 
 
 @dataclass(frozen=True)
