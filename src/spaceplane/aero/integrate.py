@@ -112,9 +112,10 @@ def _extrema(solution: Solution) -> tuple[np.ndarray, np.ndarray]:
     """Highest and lowest wall Cp, [condition, total and parts]; NaN for a part without wall."""
     mesh = solution.mesh
     cp = solution.wall_cp().astype(float)
+    body = cp[mesh.body_wall]
     high = np.full((cp.shape[1], len(mesh.part_names) + 1), np.nan)
     low = high.copy()
-    high[:, 0], low[:, 0] = cp.max(axis=0), cp.min(axis=0)
+    high[:, 0], low[:, 0] = body.max(axis=0), body.min(axis=0)
     for part in range(len(mesh.part_names)):
         own = mesh.piece_wall[mesh.piece_part == part]
         if len(own):
@@ -123,8 +124,8 @@ def _extrema(solution: Solution) -> tuple[np.ndarray, np.ndarray]:
 
 
 def wetted_area(mesh: Mesh) -> float:
-    """Sum of the wall faces' areas, m2: the scale of ConvergenceRecord's forces."""
-    return float(np.linalg.norm(mesh.wall_area, axis=1).sum())
+    """Sum of the body's wall faces' areas, m2: the scale of ConvergenceRecord's forces."""
+    return float(np.linalg.norm(mesh.wall_area[mesh.body_wall], axis=1).sum())
 
 
 def _spread(solution: Solution, reference: Reference) -> dict[str, np.ndarray]:
