@@ -1,4 +1,4 @@
-"""`spaceplane flow`: any watertight body in any list of free streams."""
+"""`spaceplane flow`: any watertight body, or any mesh around one, in any list of free streams."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from spaceplane.commands import options
 from spaceplane.commands.arguments import (
     angles,
     existing_file,
+    list_of_names,
     mach_numbers,
     numbers,
     positive,
@@ -24,6 +25,8 @@ from spaceplane.files import renamed_when_done
 
 if TYPE_CHECKING:
     from spaceplane.aero.flow_case import FlowCase
+    from spaceplane.mesh.imported import Imported
+    from spaceplane.vehicle.surface import Surface
 
 EXAMPLE = (
     "Example: spaceplane flow cone.stl --mach 1.5,3 --alpha 0,5 --area 1 --length 2 --span 1 --moment-center 0,0,0 "
@@ -32,7 +35,10 @@ EXAMPLE = (
 
 
 def flow(
-    body: Annotated[Path, typer.Argument(metavar="BODY.stl", help="Watertight body, metres; x aft, y right, z up.")],
+    body: Annotated[
+        Path | None, typer.Argument(metavar="[BODY.stl]", help="Watertight body, metres; x aft, y right, z up.")
+    ] = None,
+    *,
     mach: Annotated[str, typer.Option("--mach", metavar="M[,M...]", help="Mach numbers.")],
     area: Annotated[str, typer.Option("--area", metavar="M2", help="Reference area.")],
     length: Annotated[str, typer.Option("--length", metavar="M", help="Reference length of the pitching moment.")],
@@ -53,6 +59,25 @@ def flow(
     domain: Annotated[
         str | None,
         typer.Option("--domain", metavar="x,y,z,x,y,z", help="Lower and upper corner of the air to mesh, metres."),
+    ] = None,
+    mesh_file: Annotated[
+        Path | None,
+        typer.Option(
+            "--mesh",
+            metavar="FILE",
+            help="Body-fitted mesh (.su2 or .msh) instead of BODY.stl, metres; x aft, y right, z up. Coefficients are "
+            "those of the walls in it: of half a body where it holds half.",
+        ),
+    ] = None,
+    wall: Annotated[
+        str | None, typer.Option("--wall", metavar="NAME[,NAME...]", help="Markers of --mesh that are walls.")
+    ] = None,
+    far: Annotated[
+        str | None, typer.Option("--far", metavar="NAME[,NAME...]", help="Markers of --mesh that are far field.")
+    ] = None,
+    symmetry: Annotated[
+        str | None,
+        typer.Option("--symmetry", metavar="NAME[,NAME...]", help="Markers of --mesh that are planes of symmetry."),
     ] = None,
     precision: options.Precision = "fp32",
     json_file: options.JsonFile = None,
@@ -75,7 +100,17 @@ def flow(
     }
     center = tuple(numbers("--moment-center", moment_center, "m", 3))
     solver_precision = options.precision(precision)
-    existing_file(body, "an STL file")
+    names = {"wall": wall, "far": far, "symmetry": symmetry}
+    if mesh_file is None:
+        _refuse_options({f"--{role}": text for role, text in names.items()}, "only allowed with --mesh")
+        if body is None:
+            raise InputError("BODY.stl: missing; give it, or a mesh with --mesh FILE")
+        existing_file(body, "an STL file")
+    else:
+        given = {"BODY.stl": body, "--cell": cell, "--cells": cells, "--domain": domain}
+        _refuse_options(given, "not allowed with --mesh, whose mesh is taken as it is")
+        existing_file(mesh_file, "a .su2 or .msh file")
+    chosen = {role: list_of_names(f"--{role}", text) for role, text in names.items()}
     writable_file(json_file, "--json")
     writable_file(vtu, "--vtu", (".vtu",))
     writable_file(vtp, "--vtp", (".vtp",))
@@ -88,15 +123,27 @@ def flow(
     mesh = options.mesh_settings(cell, cells, default)
     settings = replace(FlowSettings(), precision=solver_precision)
     reference = ReferenceLengths(**lengths, moment_center=center)
-    from spaceplane.vehicle.stl import read_stl
+    imported: Imported | None = None
+    if mesh_file is None:
+        from spaceplane.vehicle.stl import read_stl
 
-    surface = read_stl(body)
-    from spaceplane.aero.flow_case import run_flow  # the numerical stack: after all that can be refused without it
+        surface = read_stl(body)
+        from spaceplane.aero.flow_case import run_flow  # the numerical stack: after all that can be refused without it
 
-    with progress_bar() as tell:
-        tell("mesh", 0, 1, "")
-        case = run_flow(surface, machs, alphas, betas, reference, mesh, settings, tell)
-    _write(case, surface, vtu, vtp)
+        with progress_bar() as tell:
+            tell("mesh", 0, 1, "")
+            case = run_flow(surface, machs, alphas, betas, reference, mesh, settings, tell)
+    else:
+        from spaceplane.mesh.imported import read_mesh
+
+        imported = read_mesh(mesh_file, chosen)
+        surface = imported.surface
+        typer.echo(_roles(imported), err=True)
+        from spaceplane.aero.flow_case import run_on_mesh
+
+        with progress_bar() as tell:
+            case = run_on_mesh(imported.mesh, machs, alphas, betas, reference, settings, tell)
+    _write(case, surface, imported, vtu, vtp)
     write_json(case.records, json_file)
     for warning in case.mesh.record.get("warnings") or ():
         typer.echo(f"warning: {warning}", err=True)
@@ -111,12 +158,26 @@ def flow(
     return 1 if bad else 0
 
 
-def _write(case: FlowCase, surface, vtu: Path | None, vtp: Path | None) -> None:
+def _refuse_options(values: dict[str, object], why: str) -> None:
+    for option, value in values.items():
+        if value is not None:
+            raise InputError(f"{option}: {value}, {why}")
+
+
+def _roles(imported: Imported) -> str:
+    """One line: how many cells, and which markers were taken as what."""
+    titles = {"wall": "wall", "far": "far field", "symmetry": "symmetry"}
+    groups = {title: [n for n, r in imported.roles.items() if r == role] for role, title in titles.items()}
+    listed = "; ".join(f"{title}: {', '.join(names)}" for title, names in groups.items() if names)
+    return f"mesh: {imported.mesh.cells} cells; {listed}"
+
+
+def _write(case: FlowCase, surface: Surface, imported: Imported | None, vtu: Path | None, vtp: Path | None) -> None:
     from spaceplane.flow import export
 
     if vtu is not None:
         with renamed_when_done(vtu) as partial:
-            export.write_vtu(case.solution, partial)
+            export.write_vtu(case.solution, partial, elements=imported and imported.elements)
     if vtp is not None:
         with renamed_when_done(vtp) as partial:
             export.write_vtp(surface, case.solution, partial)
