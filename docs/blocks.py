@@ -302,7 +302,7 @@ def trust() -> str:
 
     from spaceplane.validation import read
 
-    cases = ("cones", "sphere", "hb2", "horus")
+    cases = ("cones", "sphere", "hb2", "m6", "horus")
     rows = []
     for case in (case for case in cases if validation_path(case).exists()):
         records = [record for record in read(validation_path(case)) if record.unit != "m" and record.quantity[0] != "d"]
@@ -434,6 +434,7 @@ BLOCKS: dict[str, Callable[[], str]] = {
     "validation cones": validation_block("cones"),
     "validation sphere": validation_block("sphere"),
     "validation hb2": validation_block("hb2"),
+    "validation m6": validation_block("m6"),
     "validation horus": validation_horus,
     "validation horus lateral": horus_of_unit("1/deg"),
     "moment centre": horus_of_unit("m"),

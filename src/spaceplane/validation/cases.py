@@ -15,6 +15,7 @@ CASES: dict[str, str] = {
     "cones": "spaceplane.validation.cones",
     "sphere": "spaceplane.validation.sphere",
     "hb2": "spaceplane.validation.hb2",
+    "m6": "spaceplane.validation.m6",
     "horus": "spaceplane.validation.horus",
     "dynamics": "spaceplane.validation.dynamics",
 }
