@@ -308,7 +308,7 @@ def trust() -> str:
 
     from spaceplane.validation import read
 
-    cases = ("cones", "sphere", "hb2", "finner", "horus")
+    cases = ("cones", "sphere", "hb2", "finner", "m6", "horus")
     rows = []
     for case in (case for case in cases if validation_path(case).exists()):
         records = [record for record in read(validation_path(case)) if record.unit != "m" and record.quantity[0] != "d"]
@@ -442,6 +442,7 @@ BLOCKS: dict[str, Callable[[], str]] = {
     "validation sphere": validation_block("sphere"),
     "validation hb2": validation_block("hb2"),
     "validation finner": validation_block("finner"),
+    "validation m6": validation_block("m6"),
     "validation horus": validation_horus,
     "validation horus lateral": horus_of_unit("1/deg"),
     "moment centre": horus_of_unit("m"),

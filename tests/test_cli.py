@@ -566,6 +566,79 @@ def test_what_local_inclination_refuses(capfd, tmp_path, monkeypatch, options, n
     refused(capfd, "flow", wedge(tmp_path / "w.stl"), *mach, *FLOW, *options, naming=naming)
 
 
+# What `flow --mesh` does.
+
+
+def cone_mesh(path: Path) -> Path:
+    """Quarter of a 20 deg cone between two planes of symmetry."""
+    import numpy as np
+
+    from mesh import body_fitted
+
+    elements, _ = body_fitted.cone(8, 10, 6, *np.radians([20.0, 38.0]))
+    return (body_fitted.write_su2 if path.suffix == ".su2" else body_fitted.write_msh)(elements, path)
+
+
+@pytest.mark.parametrize("ending", [".su2", ".msh"])
+def test_flow_on_a_mesh(capfd, tmp_path, ending):
+    mesh, record = cone_mesh(tmp_path / f"cone{ending}"), tmp_path / "cone.json"
+    files = ["--json", record, "--vtp", tmp_path / "c.vtp", "--vtu", tmp_path / "c.vtu"]
+    reference = ["--area", "0.10404", "--length", "1", "--span", "1", "--moment-center", "0,0,0"]
+    code, out, err = run(capfd, "flow", "--mesh", mesh, "--mach", "3", *reference, *files)
+    assert code == 0, err
+    assert err.splitlines()[0] == "mesh: 480 cells; wall: cone; far field: farfield; symmetry: sym_z, sym_y"
+    (row,) = json.loads(record.read_text())
+    assert row["cells"] == 480 and row["converged"] and out.count("converged") == 1
+    assert row["CA"] == pytest.approx(0.284, rel=0.06)  # Taylor-Maccoll, on a coarse mesh
+    import pyvista
+
+    wall, air = pyvista.read(tmp_path / "c.vtp"), pyvista.read(tmp_path / "c.vtu")
+    assert air.n_cells == 480 and set(air.celltypes) == {12}
+    assert air.volume == pytest.approx(0.1249, rel=0.01)
+    assert wall.n_cells == 2 * 8 * 6 - 6
+    slope = wall["Cp_M3_a0_b0"][wall.cell_centers().points[:, 0] > 0.5]
+    assert slope.mean() == pytest.approx(0.284, rel=0.06)
+
+
+@pytest.mark.parametrize(
+    ("options", "naming"),
+    [
+        (["--far", "farfeld"], "did you mean 'farfield'"),
+        (["--wall", "cone"], None),
+        (["--wall", "cone,sym_y", "--symmetry", ","], "--symmetry"),
+        (["--wall", "cone", "--symmetry", "sym_y"], "'sym_z' is left over"),
+        (["--far", "farfield,cone"], "--wall: the mesh has no wall"),
+        (["--cell", "0.1"], "--cell: 0.1, not allowed with --mesh"),
+        (["--cells", "1000"], "--cells: 1000, not allowed with --mesh"),
+        (["--domain", "0,0,0,1,1,1"], "--domain"),
+        (["body.stl"], "BODY.stl: body.stl, not allowed with --mesh"),
+        (["--alpha", "5"], "goes through 80 of 160 faces of symmetry"),
+    ],
+)
+def test_bad_options_of_a_mesh(capfd, tmp_path, monkeypatch, options, naming):
+    from spaceplane.aero import flow_case
+
+    monkeypatch.setattr(flow_case, "_solved", lambda *arguments: 1 / 0)
+    mesh = cone_mesh(tmp_path / "cone.su2")
+    if naming is None:
+        with pytest.raises(ZeroDivisionError):
+            run(capfd, "flow", "--mesh", mesh, "--mach", 2, *FLOW, *options)
+        return
+    code, out, err = run(capfd, "flow", "--mesh", mesh, "--mach", 2, *FLOW, *options)
+    assert code == 2 and out == ""
+    assert err.splitlines()[-1].startswith("error: ") and naming in err.splitlines()[-1]
+
+
+def test_markers_without_a_mesh_and_nothing_at_all(capfd, tmp_path):
+    body = tetrahedron(tmp_path / "t.stl")
+    for option in ("--wall", "--far", "--symmetry"):
+        refused(capfd, "flow", body, "--mach", 2, *FLOW, option, "x", naming=f"{option}: x, only allowed with --mesh")
+    refused(capfd, "flow", "--mach", 2, *FLOW, naming="BODY.stl")
+    refused(capfd, "flow", "--mesh", "", "--mach", 2, *FLOW, naming="--mesh")
+    refused(capfd, "flow", "--mesh", tmp_path / "no.su2", "--mach", 2, *FLOW, naming="no.su2")
+    refused(capfd, "flow", "--mesh", body, "--mach", 2, *FLOW, naming=".su2 or .msh")
+
+
 def test_an_unconverged_condition_is_exit_code_1(capfd, tmp_path, monkeypatch):
     from spaceplane.aero import flow_case
 

@@ -13,6 +13,7 @@ BODIES = {
     "sphere": lambda: bodies.sphere(segments=64),
     "hb2": lambda: bodies.hb2(segments=64),
     "basic_finner": lambda: bodies.basic_finner(segments=64),
+    "m6": bodies.m6,
 }
 
 
@@ -69,6 +70,20 @@ def test_hb2_tangencies_are_the_published_ones():
         assert np.abs(stations - published).min() < rounding
     # A 64-gon of the circle's area reaches 0.16 % beyond it at its corners.
     assert np.hypot(points[:, 1], points[:, 2]).max() == pytest.approx(0.8, rel=1e-3)
+
+
+def test_m6_is_the_published_wing():
+    """Semi-span 1.1963 m, root chord 0.8059 m, trailing edge swept 15.8 deg, 9.8 % thick (AGARD AR-138, B1)."""
+    wing = bodies.m6()
+    x, z = bodies.M6_ORDINATES.T
+    chords = 0.8059**2 * (1 + 0.562 + 0.562**2) / 3  # mean of the chord squared
+    assert wing.volume == pytest.approx(2 * np.trapezoid(z, x) * chords * 2 * 1.1963, rel=1e-12)
+    assert wing.bounds[:, 1] == pytest.approx([-1.1963, 1.1963])
+    assert wing.bounds[1, 2] == pytest.approx(0.5 * 0.098 * 0.8059, rel=2e-3)
+    tip = wing.points[wing.points[:, 1] > 1.1962]
+    assert tip[:, 0].min() == pytest.approx(1.1963 * math.tan(math.radians(30.0)))
+    assert math.degrees(math.atan((tip[:, 0].max() - 0.8059) / 1.1963)) == pytest.approx(15.8, abs=0.05)
+    assert (np.diff(x) > 0).all() and z.argmax() == 36
 
 
 def test_bad_profile_is_refused():

@@ -45,6 +45,12 @@ def test_wall_faces_of_a_part_are_its_own(cone):
     assert (cone.mesh.wall_area[base, 0] < 0.0).all()  # out of the fluid, into the body
 
 
+def test_coarse_m6_has_nearly_the_published_lift():
+    lift, drag = validation.run(["m6"], fine=False)
+    assert lift.computed == pytest.approx(0.282, rel=0.03)
+    assert 0.0118 < drag.computed < 0.02 and not drag.gate
+
+
 def test_finer_walls_for_thin_shock_layers():
     assert cones.wall_cell(10.0, math.radians(10.0), True) < cones.wall_cell(3.0, math.radians(10.0), True)
     assert cones.wall_cell(1.5, math.radians(10.0), True) == 1.0 / 60

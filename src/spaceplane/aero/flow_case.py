@@ -14,8 +14,9 @@ from spaceplane.aero.increments.settings import Air, IncrementSettings
 from spaceplane.aero.integrate import BY_SOURCE, COEFFICIENTS, PRESSURES, TOTAL, Reference
 from spaceplane.environment.atmosphere import Ambient
 from spaceplane.errors import InputError
+from spaceplane.flow.freestream import velocity
 from spaceplane.flow.settings import FlowSettings
-from spaceplane.flow.solution import Solution
+from spaceplane.flow.solution import FlowConditions, Solution
 from spaceplane.flow.solve import solve
 from spaceplane.mesh.generate import generate
 from spaceplane.mesh.mesh import Mesh
@@ -26,6 +27,8 @@ from spaceplane.vehicle.surface import Surface
 
 FASTEST_POINT = 0.5
 """Speed by rotation, on the flight speed, that a point of the body may have: far beyond any vehicle's manoeuvre."""
+ALONG = 1e-3
+"""Share of the free stream's speed that may go through a plane of symmetry, flat to what its file rounds."""
 
 
 @dataclass(frozen=True)
@@ -78,24 +81,103 @@ def run_flow(
         InputError: a bad condition or body, rates that move some point of the body at more than half the flight
             speed, or skin friction without air.
     """
-    conditions = product(list(machs), list(alphas), list(betas))
-    conditions = replace(conditions, rates=np.tile(rates, (len(conditions), 1)), center=reference.moment_center)
-    arm = np.linalg.norm(body.points - np.asarray(reference.moment_center), axis=1).max()
+    conditions = _turning(product(list(machs), list(alphas), list(betas)), rates, reference, body.points)
+    viscous = _viscous(increments, ambient, len(conditions))
+    if progress:
+        progress("mesh", 0, 1, "")
+    mesh = generate(body, mesh_settings, progress)
+    return _solved(mesh, conditions, reference, flow_settings, progress, *viscous)
+
+
+def run_on_mesh(
+    mesh: Mesh,
+    machs: Sequence[float],
+    alphas: Sequence[float],
+    betas: Sequence[float],
+    reference: Reference,
+    flow_settings: FlowSettings,
+    progress: Progress | None = None,
+    rates: tuple[float, float, float] = (0.0, 0.0, 0.0),
+    increments: IncrementSettings | None = None,
+    ambient: Ambient | None = None,
+) -> FlowCase:
+    """Solve every combination of Mach number, angle of attack and sideslip on a mesh that is there already.
+
+    Args:
+        mesh: ours or an imported one; coefficients of half a body, cut at a plane of symmetry, are those of that half.
+        machs: Mach numbers.
+        alphas: angles of attack, rad.
+        betas: sideslip angles, rad.
+        reference: area, chord, span and moment centre, SI.
+        flow_settings: how to solve.
+        progress, rates, increments, ambient: as for `run_flow`.
+
+    Raises:
+        InputError: as `run_flow`, or a free stream that goes through a plane of symmetry, or rates beside one.
+    """
+    walls = mesh.wall_center[mesh.body_wall]
+    conditions = _turning(product(list(machs), list(alphas), list(betas)), rates, reference, walls)
+    if any(rates) and not mesh.body_wall.all():
+        raise InputError(f"rates: {rates}, not allowed on a mesh with planes of symmetry")
+    _require_along_symmetry(mesh, conditions)
+    viscous = _viscous(increments, ambient, len(conditions))
+    return _solved(mesh, conditions, reference, flow_settings, progress, *viscous)
+
+
+def _turning(
+    conditions: FlowConditions, rates: tuple[float, float, float], reference: Reference, points: np.ndarray
+) -> FlowConditions:
+    """The conditions with `rates`, 1/m, about the moment centre of a body with these points [point, xyz]."""
+    arm = np.linalg.norm(points - np.asarray(reference.moment_center), axis=1).max()
     share = float(np.linalg.norm(rates) * arm / conditions.mach.min())
     if share > FASTEST_POINT:
         raise InputError(
             f"rates: a point of the body would move at {share:.2g} of the flight speed, at most {FASTEST_POINT:g}"
         )
-    air = None if ambient is None else Air.of([ambient] * len(conditions))
+    return replace(conditions, rates=np.tile(rates, (len(conditions), 1)), center=reference.moment_center)
+
+
+def _viscous(
+    increments: IncrementSettings | None, ambient: Ambient | None, count: int
+) -> tuple[IncrementSettings, Air | None]:
+    """Increments, none when None, and the air of `count` conditions that friction needs."""
     increments = increments or IncrementSettings()
-    if increments.friction != "off" and air is None:
+    if increments.friction != "off" and ambient is None:
         raise InputError(f"friction = {increments.friction!r}: needs the altitude")
-    if progress:
-        progress("mesh", 0, 1, "")
-    mesh = generate(body, mesh_settings, progress)
+    return increments, None if ambient is None else Air.of([ambient] * count)
+
+
+def _solved(
+    mesh: Mesh,
+    conditions: FlowConditions,
+    reference: Reference,
+    flow_settings: FlowSettings,
+    progress: Progress | None,
+    increments: IncrementSettings,
+    air: Air | None,
+) -> FlowCase:
     solution = solve(mesh, conditions, flow_settings, progress)
     coefficients = integrate_with(solution, reference, increments, air)
     return FlowCase(records(solution, coefficients), coefficients, mesh, solution)
+
+
+def _require_along_symmetry(mesh: Mesh, conditions: FlowConditions) -> None:
+    """Refuse free streams that go through a plane of symmetry."""
+    area = mesh.wall_area[~mesh.body_wall]
+    if not len(area):
+        return
+    normal = area / np.linalg.norm(area, axis=1)[:, None]
+    wind = velocity(conditions.mach, conditions.alpha, conditions.beta) / np.asarray(conditions.mach)[:, None]
+    through = np.abs(wind @ normal.T)
+    bad = np.flatnonzero(through.max(axis=1) > ALONG)
+    if len(bad):
+        first, share = bad[0], through[bad[0]]
+        x, y, z = normal[share.argmax()]
+        raise InputError(
+            f"alpha {degrees(conditions.alpha[first]):g} deg, beta {degrees(conditions.beta[first]):g} deg: this free "
+            f"stream goes through {int((share > ALONG).sum())} of {len(area)} faces of symmetry (one has the normal "
+            f"{x:.3g}, {y:.3g}, {z:.3g}); it must run along the plane of symmetry"
+        )
 
 
 def records(solution: Solution, coefficients: xr.Dataset) -> list[dict]:

@@ -170,8 +170,8 @@ def _sorted(pieces: WallPieces, cp: np.ndarray) -> tuple[WallPieces, np.ndarray]
 
 
 def wetted_area(mesh: Mesh) -> float:
-    """Sum of the wall faces' areas, m2: the scale of ConvergenceRecord's forces."""
-    return float(np.linalg.norm(mesh.wall_area, axis=1).sum())
+    """Sum of the body's wall faces' areas, m2: the scale of ConvergenceRecord's forces."""
+    return float(np.linalg.norm(mesh.wall_area[mesh.body_wall], axis=1).sum())
 
 
 def _spread(solution: Solution, reference: Reference) -> dict[str, np.ndarray]:

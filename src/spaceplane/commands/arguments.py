@@ -13,7 +13,7 @@ from spaceplane.errors import InputError
 from spaceplane.files import json_text, writable_folder, write_text
 
 ASSIGNING = ("--set", "--deflect")
-PLACES = ("--out", "--json", "--vtu", "--vtp", "--store")
+PLACES = ("--out", "--json", "--vtu", "--vtp", "--store", "--mesh")
 
 
 def spread_assignments(arguments: Sequence[str]) -> list[str]:
@@ -72,6 +72,20 @@ def numbers(option: str, text: str, unit: str = "", count: int | None = None) ->
     if count is not None and len(values) != count:
         raise InputError(f"{option}: {text.strip()!r} has {len(values)} numbers, {count} are needed{_of(unit)}")
     return values
+
+
+def list_of_names(option: str, text: str | None) -> list[str] | None:
+    """Names between commas, without the blanks around them; None for None.
+
+    Raises:
+        InputError: an empty name.
+    """
+    if text is None:
+        return None
+    names = [name.strip() for name in text.split(",")]
+    if not all(names):
+        raise InputError(f"{option}: {text.strip()!r} has an empty name; give names between commas")
+    return names
 
 
 def mach_numbers(text: str, option: str = "--mach") -> list[float]:

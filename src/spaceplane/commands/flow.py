@@ -1,4 +1,4 @@
-"""`spaceplane flow`: any watertight body in any list of free streams."""
+"""`spaceplane flow`: any watertight body, or any mesh around one, in any list of free streams."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from spaceplane.commands import options
 from spaceplane.commands.arguments import (
     angles,
     existing_file,
+    list_of_names,
     mach_numbers,
     number,
     numbers,
@@ -26,7 +27,9 @@ from spaceplane.files import renamed_when_done
 if TYPE_CHECKING:
     from spaceplane.aero.flow_case import FlowCase
     from spaceplane.environment.atmosphere import Ambient
+    from spaceplane.mesh.imported import Imported
     from spaceplane.vehicle.properties import ReferenceLengths
+    from spaceplane.vehicle.surface import Surface
 
 EULER = "euler"
 EXAMPLE = (
@@ -36,7 +39,10 @@ EXAMPLE = (
 
 
 def flow(
-    body: Annotated[Path, typer.Argument(metavar="BODY.stl", help="Watertight body, metres; x aft, y right, z up.")],
+    body: Annotated[
+        Path | None, typer.Argument(metavar="[BODY.stl]", help="Watertight body, metres; x aft, y right, z up.")
+    ] = None,
+    *,
     mach: Annotated[str, typer.Option("--mach", metavar="M[,M...]", help="Mach numbers.")],
     area: Annotated[str, typer.Option("--area", metavar="M2", help="Reference area.")],
     length: Annotated[str, typer.Option("--length", metavar="M", help="Reference length of the pitching moment.")],
@@ -66,6 +72,25 @@ def flow(
     domain: Annotated[
         str | None,
         typer.Option("--domain", metavar="x,y,z,x,y,z", help="Lower and upper corner of the air to mesh, metres."),
+    ] = None,
+    mesh_file: Annotated[
+        Path | None,
+        typer.Option(
+            "--mesh",
+            metavar="FILE",
+            help="Body-fitted mesh (.su2 or .msh) instead of BODY.stl, metres; x aft, y right, z up. Coefficients are "
+            "those of the walls in it: of half a body where it holds half.",
+        ),
+    ] = None,
+    wall: Annotated[
+        str | None, typer.Option("--wall", metavar="NAME[,NAME...]", help="Markers of --mesh that are walls.")
+    ] = None,
+    far: Annotated[
+        str | None, typer.Option("--far", metavar="NAME[,NAME...]", help="Markers of --mesh that are far field.")
+    ] = None,
+    symmetry: Annotated[
+        str | None,
+        typer.Option("--symmetry", metavar="NAME[,NAME...]", help="Markers of --mesh that are planes of symmetry."),
     ] = None,
     precision: options.Precision = "fp32",
     friction: options.Friction = "off",
@@ -100,7 +125,19 @@ def flow(
     solver_precision = options.precision(precision)
     increments = options.increment_settings(friction, base, wall_temperature, emissivity, transition_reynolds)
     ambient = _ambient(altitude, friction, any(turning))
-    existing_file(body, "an STL file")
+    names = {"wall": wall, "far": far, "symmetry": symmetry}
+    if mesh_file is None:
+        _refuse_options({f"--{role}": text for role, text in names.items()}, "only allowed with --mesh")
+        if body is None:
+            raise InputError("BODY.stl: missing; give it, or a mesh with --mesh FILE")
+        existing_file(body, "an STL file")
+    else:
+        if method != EULER:
+            raise InputError(f"--method: {method}, not allowed with --mesh: local inclination takes a surface")
+        given = {"BODY.stl": body, "--cell": cell, "--cells": cells, "--domain": domain}
+        _refuse_options(given, "not allowed with --mesh, whose mesh is taken as it is")
+        existing_file(mesh_file, "a .su2 or .msh file")
+    chosen = {role: list_of_names(f"--{role}", text) for role, text in names.items()}
     writable_file(json_file, "--json")
     writable_file(vtu, "--vtu", (".vtu",))
     writable_file(vtp, "--vtp", (".vtp",))
@@ -112,7 +149,8 @@ def flow(
         given |= {"--rates": rates} if any(turning) else {}
         given |= {"--friction": friction} if friction != "off" else {}
         given |= {"--base": base} if base != "inviscid" else {}
-        _refuse_euler_options(method, given, solver_precision)
+        given |= {"--precision": precision} if solver_precision != "single" else {}
+        _refuse_options(given, f"allowed with --method {EULER} only")
         return _inclination(body, method, (machs, alphas, betas), reference, json_file)
     from spaceplane.flow.settings import FlowSettings
     from spaceplane.mesh.settings import MeshSettings
@@ -121,16 +159,29 @@ def flow(
     default = MeshSettings(target_cells=200_000, domain=corners and (tuple(corners[:3]), tuple(corners[3:])))
     mesh = options.mesh_settings(cell, cells, default)
     settings = replace(FlowSettings(), precision=solver_precision)
-    from spaceplane.vehicle.stl import read_stl
+    on_sound = tuple(rate / ambient.speed_of_sound for rate in turning)
+    extra = {"rates": on_sound, "increments": increments, "ambient": ambient}
+    imported: Imported | None = None
+    if mesh_file is None:
+        from spaceplane.vehicle.stl import read_stl
 
-    surface = read_stl(body)
-    from spaceplane.aero.flow_case import run_flow  # the numerical stack: after all that can be refused without it
+        surface = read_stl(body)
+        from spaceplane.aero.flow_case import run_flow  # the numerical stack: after all that can be refused without it
 
-    with progress_bar() as tell:
-        tell("mesh", 0, 1, "")
-        on_sound = tuple(rate / ambient.speed_of_sound for rate in turning)
-        case = run_flow(surface, machs, alphas, betas, reference, mesh, settings, tell, on_sound, increments, ambient)
-    _write(case, surface, vtu, vtp)
+        with progress_bar() as tell:
+            tell("mesh", 0, 1, "")
+            case = run_flow(surface, machs, alphas, betas, reference, mesh, settings, tell, **extra)
+    else:
+        from spaceplane.mesh.imported import read_mesh
+
+        imported = read_mesh(mesh_file, chosen)
+        surface = imported.surface
+        typer.echo(_roles(imported), err=True)
+        from spaceplane.aero.flow_case import run_on_mesh
+
+        with progress_bar() as tell:
+            case = run_on_mesh(imported.mesh, machs, alphas, betas, reference, settings, tell, **extra)
+    _write(case, surface, imported, vtu, vtp)
     write_json(case.records, json_file)
     for warning in case.mesh.record.get("warnings") or ():
         typer.echo(f"warning: {warning}", err=True)
@@ -156,14 +207,6 @@ def _ambient(altitude: str | None, friction: str, turns: bool) -> Ambient:
     return us1976(0.0 if altitude is None else number("--altitude", altitude, "m"))
 
 
-def _refuse_euler_options(method: str, given: dict[str, object], precision: str) -> None:
-    for option, value in given.items():
-        if value is not None:
-            raise InputError(f"{option}: {value}, allowed with --method {EULER} only")
-    if precision != "single":
-        raise InputError(f"--precision: allowed with --method {EULER} only ('{method}' computes in fp64)")
-
-
 def _inclination(
     body: Path, name: str, grid: tuple[list[float], ...], reference: ReferenceLengths, json_file: Path | None
 ) -> int:
@@ -184,12 +227,26 @@ def _inclination(
     return 0
 
 
-def _write(case: FlowCase, surface, vtu: Path | None, vtp: Path | None) -> None:
+def _refuse_options(values: dict[str, object], why: str) -> None:
+    for option, value in values.items():
+        if value is not None:
+            raise InputError(f"{option}: {value}, {why}")
+
+
+def _roles(imported: Imported) -> str:
+    """One line: how many cells, and which markers were taken as what."""
+    titles = {"wall": "wall", "far": "far field", "symmetry": "symmetry"}
+    groups = {title: [n for n, r in imported.roles.items() if r == role] for role, title in titles.items()}
+    listed = "; ".join(f"{title}: {', '.join(names)}" for title, names in groups.items() if names)
+    return f"mesh: {imported.mesh.cells} cells; {listed}"
+
+
+def _write(case: FlowCase, surface: Surface, imported: Imported | None, vtu: Path | None, vtp: Path | None) -> None:
     from spaceplane.flow import export
 
     if vtu is not None:
         with renamed_when_done(vtu) as partial:
-            export.write_vtu(case.solution, partial)
+            export.write_vtu(case.solution, partial, elements=imported and imported.elements)
     if vtp is not None:
         with renamed_when_done(vtp) as partial:
             export.write_vtp(surface, case.solution, partial)

@@ -11,6 +11,9 @@ from scipy.sparse.csgraph import connected_components
 from spaceplane.mesh import coarsen as octree
 from spaceplane.mesh.mesh import Mesh
 
+_BODY = 6
+"""Side of wall faces of the body; those of planes of symmetry have the direction that they face."""
+
 
 @dataclass(frozen=True)
 class Sequence:
@@ -31,17 +34,23 @@ def _sum(rows: np.ndarray, values: np.ndarray, count: int) -> np.ndarray:
     return np.stack([np.bincount(rows, v, count) for v in values.T], axis=1)
 
 
+def _facing(area: np.ndarray) -> np.ndarray:
+    """[face] which of the six directions along the axes an area vector [face, xyz] faces most, 0 to 5."""
+    axis = np.abs(area).argmax(axis=1)
+    return 2 * axis + (area[np.arange(len(area)), axis] > 0)
+
+
 def _join_boundary(cell: np.ndarray, area: np.ndarray, center: np.ndarray, sides: np.ndarray) -> tuple[np.ndarray, ...]:
-    """One boundary face per (coarse cell, side): (cell, area, center)."""
+    """One boundary face per (coarse cell, side): (cell, area, center, side)."""
     if not len(cell):
-        return cell.astype(np.int32), area, center
+        return cell.astype(np.int32), area, center, sides
     _, first, inverse = np.unique(cell.astype(np.int64) * 8 + sides, return_index=True, return_inverse=True)
     count = len(first)
     size = np.linalg.norm(area, axis=1)
     middle = (
         _sum(inverse, center * size[:, None], count) / np.maximum(np.bincount(inverse, size, count), 1e-300)[:, None]
     )
-    return cell[first].astype(np.int32), _sum(inverse, area, count), middle
+    return cell[first].astype(np.int32), _sum(inverse, area, count), middle, sides[first]
 
 
 def join_in_cubes(mesh: Mesh, edge: float) -> tuple[Mesh, np.ndarray]:
@@ -72,13 +81,9 @@ def join_in_cubes(mesh: Mesh, edge: float) -> tuple[Mesh, np.ndarray]:
     size = np.linalg.norm(area, axis=1)
     face_center = _sum(inverse, mesh.face_center[across] * size[:, None], len(first))
     face_center /= np.maximum(np.bincount(inverse, size, len(first)), 1e-300)[:, None]
-    wall = _join_boundary(parent[mesh.wall_cell], mesh.wall_area, mesh.wall_center, np.zeros(len(mesh.wall_cell), int))
-    side = (
-        2 * np.abs(mesh.far_area).argmax(axis=1) + (mesh.far_area.sum(axis=1) > 0)
-        if len(mesh.far_area)
-        else np.zeros(0, int)
-    )
-    far = _join_boundary(parent[mesh.far_cell], mesh.far_area, mesh.far_center, side)
+    side = np.where(mesh.body_wall, _BODY, _facing(mesh.wall_area))
+    wall = _join_boundary(parent[mesh.wall_cell], mesh.wall_area, mesh.wall_center, side)
+    far = _join_boundary(parent[mesh.far_cell], mesh.far_area, mesh.far_center, _facing(mesh.far_area))
     empty = np.zeros((0, 3))
     coarse = Mesh(
         cell_volume=volume,
@@ -98,6 +103,7 @@ def join_in_cubes(mesh: Mesh, edge: float) -> tuple[Mesh, np.ndarray]:
         piece_center=empty,
         piece_part=np.zeros(0, np.int32),
         part_names=mesh.part_names,
+        wall_symmetry=wall[3] != _BODY,
     )
     return coarse, parent
 

@@ -55,8 +55,8 @@ def diagnose(solution: Solution, near: float = 0.5) -> Diagnostics:
     mesh, conditions = solution.mesh, solution.conditions
     gamma, mach = conditions.gamma, conditions.mach
     nothing = np.full(len(conditions), np.nan)
-    cp = solution.wall_cp()
-    low, high = mesh.wall_center.min(axis=0), mesh.wall_center.max(axis=0)
+    cp, wall = solution.wall_cp()[mesh.body_wall], mesh.wall_center[mesh.body_wall]
+    low, high = wall.min(axis=0), wall.max(axis=0)
     margin = near * (high - low).max()
     close = ((mesh.cell_center > low - margin) & (mesh.cell_center < high + margin)).all(axis=1)
     volume = mesh.cell_volume[close]

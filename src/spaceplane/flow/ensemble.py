@@ -48,11 +48,10 @@ class Ensemble:
         self.settings, self.order = settings, order
         self.dtype = dtype = settings.dtype
         self.gamma = dtype(conditions.gamma)
-        self.wall_area = np.asarray(mesh.wall_area, dtype=np.float64)
+        self.wall_area = np.asarray(mesh.wall_area, dtype=np.float64) * mesh.body_wall[:, None]
         self.wetted = float(np.linalg.norm(self.wall_area, axis=1).sum()) or 1.0
-        extent = (
-            np.ptp(mesh.wall_center, axis=0).max() if len(mesh.wall_center) else np.ptp(mesh.cell_center, axis=0).max()
-        )
+        wall = mesh.wall_center[mesh.body_wall]
+        extent = np.ptp(wall if len(wall) else mesh.cell_center, axis=0).max()
         self.smallness = dtype((settings.limiter_constant / extent) ** 3)
         self.low, self.high = (dtype(value) for value in FLUXES[settings.flux])
         self.limiter = LIMITERS[settings.limiter]

@@ -1,4 +1,4 @@
-"""Flow fields for ParaView and pyvista: the octree's cells as VTU, the coloured surface as VTP."""
+"""Flow fields for ParaView and pyvista: the cells as VTU, the coloured surface as VTP."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import numpy as np
 
 from spaceplane.errors import InputError
 from spaceplane.flow.solution import FlowConditions, Solution
+from spaceplane.mesh.elements import Elements
 from spaceplane.mesh.mesh import Mesh
 from spaceplane.vehicle.surface import Surface
 
@@ -18,6 +19,7 @@ _OTHER_PART = 0.05
 _CORNERS = np.array(
     [[-1, -1, -1], [1, -1, -1], [1, 1, -1], [-1, 1, -1], [-1, -1, 1], [1, -1, 1], [1, 1, 1], [-1, 1, 1]], dtype=float
 )
+_VTK_NAME = {"tetra": "TETRA", "hexahedron": "HEXAHEDRON", "wedge": "WEDGE", "pyramid": "PYRAMID"}
 
 
 def condition_labels(conditions: FlowConditions) -> tuple[str, ...]:
@@ -29,28 +31,35 @@ def condition_labels(conditions: FlowConditions) -> tuple[str, ...]:
     )
 
 
-def write_vtu(solution: Solution, path: Path | str, labels: Sequence[str] | None = None) -> None:
-    """Write the cells of an octree mesh with the flow of each condition.
+def write_vtu(
+    solution: Solution, path: Path | str, labels: Sequence[str] | None = None, elements: Elements | None = None
+) -> None:
+    """Write the cells of a mesh with the flow of each condition.
 
     Cell data per condition: `Mach_<label>`, `Cp_<label>`, `density_<label>` (on the free stream's), `velocity_<label>`
-    (on the free-stream speed of sound, geometry axes); and `fluid_fraction`, the part of the cube outside the body.
-    A cell at the body is drawn as its whole cube.
+    (on the free-stream speed of sound, geometry axes); and `fluid_fraction`, the part of an octree's cube outside the
+    body. A cell of an octree at the body is drawn as its whole cube.
 
     Args:
-        solution: flow on an octree mesh.
+        solution: flow on an octree mesh or an imported one.
         path: ends in .vtu.
         labels: [condition] names; `condition_labels` by default.
+        elements: of an imported mesh.
 
     Raises:
-        InputError: another ending, a mesh without cubes, or a file that cannot be written.
+        InputError: another ending, a mesh without cubes or elements, or a file that cannot be written.
     """
     path = _target(path, ".vtu")
     import pyvista
 
     mesh, conditions = solution.mesh, solution.conditions
-    points, cells = _cubes(mesh)
-    grid = pyvista.UnstructuredGrid({pyvista.CellType.HEXAHEDRON: cells}, points)
-    grid.cell_data["fluid_fraction"] = (mesh.cell_volume / mesh.cell_size**3).astype(np.float32)
+    if elements is None:
+        points, cells = _cubes(mesh)
+        grid = pyvista.UnstructuredGrid({pyvista.CellType.HEXAHEDRON: cells}, points)
+        grid.cell_data["fluid_fraction"] = (mesh.cell_volume / mesh.cell_size**3).astype(np.float32)
+    else:
+        kinds = {pyvista.CellType[_VTK_NAME[kind]]: corners for kind, corners in elements.cells.items()}
+        grid = pyvista.UnstructuredGrid(kinds, elements.points)
     for i, label in enumerate(labels or condition_labels(conditions)):
         density, velocity, pressure = solution.state[:, 0, i], solution.state[:, 1:4, i], solution.state[:, 4, i]
         sound = np.sqrt(conditions.gamma * pressure / density)

@@ -33,6 +33,8 @@ class Mesh:
         record: what the generator has to say: counts, merged and split cells, warnings, seconds.
         cell_cube_center: [cell, xyz] centre of the octree cube of edge `cell_size` that the cell lies in (a merged
             cell: the cube of its largest member); None on imported meshes.
+        wall_symmetry: [wall] whether the wall face lies in a plane of symmetry: a slip wall to the flow, no part of the
+            body (it has no pieces and bears no force); None where no wall face does.
     """
 
     cell_volume: np.ndarray
@@ -54,11 +56,17 @@ class Mesh:
     part_names: tuple[str, ...]
     record: dict = field(default_factory=dict)
     cell_cube_center: np.ndarray | None = None
+    wall_symmetry: np.ndarray | None = None
 
     @property
     def cells(self) -> int:
         """Number of cells."""
         return len(self.cell_volume)
+
+    @property
+    def body_wall(self) -> np.ndarray:
+        """[wall] whether the wall face belongs to the body; those in planes of symmetry do not."""
+        return np.ones(len(self.wall_cell), bool) if self.wall_symmetry is None else ~self.wall_symmetry
 
     def closure(self) -> np.ndarray:
         """[cell, xyz] sum of outward area vectors of each cell, m2: zero to round-off on a closed mesh."""

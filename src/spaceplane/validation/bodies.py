@@ -12,6 +12,31 @@ import numpy as np
 from spaceplane.errors import InputError
 from spaceplane.vehicle.surface import Surface
 
+M6_ROOT_CHORD, M6_SEMI_SPAN, M6_TAPER = 0.8059, 1.1963, 0.562
+"""Root chord and semi-span of the ONERA M6 wing, m, and tip chord over root chord."""
+M6_LEADING_EDGE_SWEEP = math.radians(30.0)
+M6_ORDINATES = np.fromstring(
+    """
+    0.0000000 0.0000000 0.0000165 0.0006914 0.0000696 0.0014416 0.0001675 0.0022554 0.0003232 0.0031382
+    0.0005508 0.0040959 0.0008657 0.0051343 0.0012868 0.0062598 0.0018364 0.0074784 0.0025441 0.0087958
+    0.0034428 0.0102163 0.0045704 0.0117419 0.0059751 0.0133708 0.0077112 0.0150951 0.0098413 0.0168984
+    0.0124479 0.0187537 0.0156171 0.0206220 0.0194609 0.0224545 0.0241067 0.0242004 0.0297008 0.0258245
+    0.0364261 0.0273317 0.0444852 0.0287912 0.0541248 0.0303278 0.0656303 0.0320138 0.0793366 0.0338372
+    0.0956354 0.0357742 0.1149796 0.0377923 0.1378963 0.0398522 0.1649976 0.0419089 0.1919327 0.0436214
+    0.2187096 0.0450507 0.2453310 0.0462358 0.2717978 0.0471987 0.2981113 0.0479494 0.3242726 0.0484902
+    0.3502830 0.0488183 0.3761446 0.0489296 0.4018567 0.0488202 0.4274223 0.0484833 0.4528441 0.0479351
+    0.4781197 0.0471661 0.5032514 0.0461903 0.5282426 0.0450209 0.5530937 0.0436741 0.5778043 0.0421684
+    0.6023757 0.0405241 0.6268104 0.0387613 0.6511093 0.0368990 0.6752726 0.0349542 0.6993027 0.0329402
+    0.7231995 0.0308662 0.7469658 0.0287365 0.7705998 0.0265505 0.7941055 0.0243027 0.8174828 0.0219842
+    0.8407324 0.0195838 0.8638564 0.0170915 0.8868235 0.0145051 0.9061905 0.0122389 0.9225336 0.0102727
+    0.9363346 0.0085827 0.9479946 0.0071423 0.9578511 0.0059224 0.9661860 0.0048907 0.9732361 0.0040180
+    0.9792020 0.0032796 0.9842508 0.0026547 0.9885252 0.0021257 0.9921438 0.0016778 0.9952080 0.0012985
+    0.9978030 0.0009773 1.0000000 0.0007052
+    """,
+    sep=" ",
+).reshape(-1, 2)
+"""[station, (x, z)] upper side of its symmetric section (ONERA D) on the chord; the trailing edge is 0.14 % thick."""
+
 
 def revolve(profile: np.ndarray, segments: int, base_from: int | None = None) -> Surface:
     """Turn a meridian about the x axis into a closed surface.
@@ -180,6 +205,39 @@ def _tagged(surface: Surface, names: tuple[str, ...]):
     if solid.status() != manifold3d.Error.NoError:
         raise InputError(f"{surface.part_names}: not a closed surface ({solid.status().name})")
     return solid
+
+
+def m6(stations: int = 24) -> Surface:
+    """The ONERA M6 wing, both halves, from 0 at the leading edge of the root; flat tips.
+
+    Args:
+        stations: strips from root to tip.
+
+    Source: Schmitt and Charpin, AGARD AR-138 (1979), chapter B1; ordinates as in the NPARC archive.
+    """
+    ring = np.concatenate([M6_ORDINATES[::-1], (M6_ORDINATES * [1.0, -1.0])[1:]])
+    count, rows = len(ring), 2 * stations + 1
+    side = np.arange(-stations, stations + 1) / stations
+    chord = M6_ROOT_CHORD * (1.0 - (1.0 - M6_TAPER) * np.abs(side))
+    points = np.empty((rows, count, 3))
+    sweep = M6_SEMI_SPAN * math.tan(M6_LEADING_EDGE_SWEEP)
+    points[..., 0] = sweep * np.abs(side)[:, None] + chord[:, None] * ring[:, 0]
+    points[..., 1] = M6_SEMI_SPAN * side[:, None]
+    points[..., 2] = chord[:, None] * ring[:, 1]
+    here = (count * np.arange(rows - 1)[:, None] + np.arange(count)).ravel()
+    following = (count * np.arange(rows - 1)[:, None] + (np.arange(count) + 1) % count).ravel()
+    # The ring runs from the upper trailing edge over the nose to the lower one.
+    triangles = [
+        np.stack([here, following + count, following], axis=1),
+        np.stack([here, here + count, following + count], axis=1),
+    ]
+    # Each tip is a strip between the upper and the lower side, which meet at the nose.
+    nose = count // 2
+    up, low = np.arange(nose), count - 1 - np.arange(nose)
+    cap = np.concatenate([np.stack([up, low - 1, low], axis=1), np.stack([up, up + 1, low - 1], axis=1)[:-1]])
+    triangles += [cap, (rows - 1) * count + cap[:, ::-1]]
+    every = np.concatenate(triangles).astype(np.int64)
+    return Surface(points.reshape(-1, 3), every, np.zeros(len(every), np.int32), ("wing",))
 
 
 def _exact_cosine(segments: int) -> np.ndarray:

@@ -16,6 +16,7 @@ CASES: dict[str, str] = {
     "sphere": "spaceplane.validation.sphere",
     "hb2": "spaceplane.validation.hb2",
     "finner": "spaceplane.validation.finner",
+    "m6": "spaceplane.validation.m6",
     "horus": "spaceplane.validation.horus",
     "dynamics": "spaceplane.validation.dynamics",
 }
