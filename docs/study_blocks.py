@@ -18,6 +18,8 @@ DATA = Path(__file__).resolve().parent / "data"
 SENSITIVITY, COMPARISON = DATA / "sensitivity.json", DATA / "comparison.json"
 COLUMNS = ("parameter", "side", "parameter_value", "mach", "quantity", "value", "default", "noise", "flow")
 DERIVATIVES = ("CD_alpha", "CL_alpha", "Cm_alpha", "CY_beta", "Cl_beta", "Cn_beta", "CD_M", "CL_M", "Cm_M")
+CHORD, SPAN = 23.0, 13.0
+"""Reference lengths of HORUS-2B, m."""
 AFT_CENTRE = 1.8  # m: from the default centre to the one that the published C_m asks for (docs/moment-reference.md)
 
 
@@ -172,11 +174,40 @@ def about_aft_centre(row: dict[str, float], alpha: float, aft: float) -> dict[st
         alpha: angle of attack, rad.
         aft: distance moved, m.
     """
+    normal, side = normal_and_side(row, alpha)
+    return {"Cm_alpha": row["Cm_alpha"] + normal * aft / CHORD, "Cn_beta": row["Cn_beta"] + side * aft / SPAN}
+
+
+def normal_and_side(row: dict[str, float], alpha: float) -> tuple[float, float]:
+    """Slopes of the normal force with alpha and of the force along body y with sideslip, per radian."""
     normal = row["CL_alpha"] * math.cos(alpha) - row["CL"] * math.sin(alpha)
     normal += row["CD_alpha"] * math.sin(alpha) + row["CD"] * math.cos(alpha)
-    side = row["CY_beta"] - row["CD"]  # along body y: the drag turns with the wind
-    chord, span = 23.0, 13.0
-    return {"Cm_alpha": row["Cm_alpha"] + normal * aft / chord, "Cn_beta": row["Cn_beta"] + side * aft / span}
+    return normal, row["CY_beta"] - row["CD"]  # along body y: the drag turns with the wind
+
+
+def damping_about(row: dict[str, float], moved: dict[str, float], aft: float) -> dict[str, float]:
+    """Damping derivatives about a centre moved aft; none where `row` has none.
+
+    A point that lies ahead of the turning centre by a moves up in pitching and to the right in yawing: it meets the air
+    at an angle of attack smaller by q a/V and a sideslip greater by r a/V.
+
+    Args:
+        row: derivatives about the old centre; moved: `Cm_alpha` and `Cn_beta` about the new one.
+        aft: distance moved, m.
+    """
+    if "Cm_q" not in row:
+        return {}
+    pitch, yaw = 2.0 * aft / CHORD, 2.0 * aft / SPAN
+    return {
+        "CL_q": row["CL_q"] - pitch * row["CL_alpha"],
+        "Cm_q": row["Cm_q"] + row["CL_q"] * aft / CHORD - pitch * moved["Cm_alpha"],
+        "CY_p": row["CY_p"],
+        "Cl_p": row["Cl_p"],
+        "Cn_p": row["Cn_p"] + row["CY_p"] * aft / SPAN,
+        "CY_r": row["CY_r"] + yaw * row["CY_beta"],
+        "Cl_r": row["Cl_r"] + yaw * row["Cl_beta"],
+        "Cn_r": row["Cn_r"] + row["CY_r"] * aft / SPAN + yaw * moved["Cn_beta"],
+    }
 
 
 def _moved(aft_of_default: float) -> list[dict]:
@@ -395,6 +426,7 @@ def _about(point: dict, side: int, aft: float) -> tuple[str, str, str]:
     normal = values["CL_M"] * math.cos(alpha) + values["CD_M"] * math.sin(alpha)
     moved["Cm_M"] = values["Cm_M"] + normal * aft / vehicle.reference.chord
     static = {name: values[name] for name in STATIC} | moved
+    static |= damping_about(values, moved, aft)
     flight = taem_point(point["mach"], alpha_deg=point["alpha_deg"][side])
     flight = flight.with_coefficients(values["CL"], values["CD"])
     modes = identify(linearise(flight, vehicle.mass, vehicle.reference, Derivatives(**static)))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass, replace
 
+from spaceplane.dynamics.derivatives import DAMPING, is_per_angle
 from spaceplane.study.matching import match_modes
 from spaceplane.study.thesis import DERIVATIVES
 
@@ -175,9 +176,10 @@ def level_number(level: int | str | None) -> int | None:
 def _quantities(point: dict, reference: dict) -> Iterator[tuple]:
     for name in COEFFICIENTS:
         yield "coefficient", name, "-", point["coefficients"].get(name), reference["coefficients"].get(name), None
-    for name in DERIVATIVES:
+    damping = [name for name in DAMPING if name in reference["derivatives"]]
+    for name in (*DERIVATIVES, *damping):
         mine, base = point["derivatives"].get(name, {}), reference["derivatives"].get(name, {})
-        unit = "-" if name.endswith("_M") else "1/rad"
+        unit = "1/rad" if is_per_angle(name) else "-"
         yield "derivative", name, unit, mine.get("value"), base.get("value"), mine.get("error")
     yield from _mode_quantities(point, reference)
     yield from _level_quantities(point, reference)

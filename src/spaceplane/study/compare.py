@@ -158,8 +158,9 @@ def _pair(one: float | None, two: float | None) -> dict:
 
 
 def _derivative_rows(one: dict, two: dict) -> list[dict]:
-    names = [name for name in one if name in two]
-    names.sort(key=lambda name: thesis.DERIVATIVES.index(name) if name in thesis.DERIVATIVES else len(names))
+    common = [name for name in one if name in two]
+    names = [name for name in thesis.DERIVATIVES if name in common]
+    names += [name for name in common if name not in names]
     rows = []
     for name in names:
         row = {"name": name, "unit": one[name].get("unit"), **_pair(one[name].get("value"), two[name].get("value"))}
