@@ -324,6 +324,23 @@ def test_blanks_in_lists_are_fine():
     assert numbers("--moment-center", "1, 2, 3", count=3) == [1.0, 2.0, 3.0]
 
 
+@pytest.mark.parametrize(
+    ("text", "value"), [("300000", 300_000), ("300k", 300_000), ("1.5M", 1_500_000), (" 40K ", 40_000)]
+)
+def test_counts_of_cells_may_have_a_suffix(text, value):
+    from spaceplane.commands.arguments import count
+
+    assert count("--cells", text, "cells") == value
+
+
+@pytest.mark.parametrize("text", ["k", "-3k", "30q", "", "0M"])
+def test_bad_counts_name_the_option(text):
+    from spaceplane.commands.arguments import count
+
+    with pytest.raises(InputError, match="--cells"):
+        count("--cells", text, "cells")
+
+
 def test_missing_body(capfd, tmp_path):
     refused(capfd, "flow", tmp_path / "no.stl", "--mach", 2, *FLOW, naming="no.stl")
 

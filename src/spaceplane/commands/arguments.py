@@ -130,6 +130,17 @@ def positive(option: str, text: str, unit: str) -> float:
     return value
 
 
+def count(option: str, text: str, unit: str) -> int:
+    """A whole number above 0, such as 300000, 300k or 1.5M.
+
+    Raises:
+        InputError: as `positive`.
+    """
+    scale = {"k": 1e3, "m": 1e6}.get(text.strip()[-1:].lower(), 1.0)
+    digits = text.strip()[:-1] if scale > 1.0 else text
+    return round(scale * positive(option, digits, unit))
+
+
 def assignments(option: str, texts: Sequence[str] | None) -> dict[str, float]:
     """`name=value` texts (also several between commas) as a dict of numbers, each in the unit that its name implies.
 

@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from spaceplane.commands import options
-from spaceplane.commands.arguments import positive, writable_file, write_json
+from spaceplane.commands.arguments import count, writable_file, write_json
 from spaceplane.commands.progress import progress_bar
 from spaceplane.errors import InputError
 from spaceplane.files import writable_folder
@@ -65,7 +65,7 @@ def _read(first: Path, second: Path) -> dict:
 
 
 def _computed(folder: Path, cells: str | None, workers: int) -> dict:
-    settings = {} if cells is None else {"mesh": {"target_cells": round(positive("--cells", cells, "cells"))}}
+    settings = {} if cells is None else {"mesh": {"target_cells": count("--cells", cells, "cells")}}
     from spaceplane.mesh.generate import compile_kernels
     from spaceplane.study.compare import default_against_optimised
 

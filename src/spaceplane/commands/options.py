@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from spaceplane.commands.arguments import assignments, number, positive
+from spaceplane.commands.arguments import assignments, count, number, positive
 from spaceplane.errors import InputError
 
 if TYPE_CHECKING:
@@ -35,7 +35,8 @@ Deflections = Annotated[
 AllowOutside = Annotated[bool, typer.Option("--allow-outside-limits", help="Accept values outside their limits.")]
 Cell = Annotated[str | None, typer.Option("--cell", metavar="METRES", help="Edge of the cells at the wall.")]
 Cells = Annotated[
-    str | None, typer.Option("--cells", metavar="N", help="About how many cells the mesh has, instead of --cell.")
+    str | None,
+    typer.Option("--cells", metavar="N", help="About how many cells the mesh has, such as 300k, instead of --cell."),
 ]
 Precision = Annotated[
     str, typer.Option("--precision", metavar="fp32|fp64", help="Floating-point precision of the flow solver.")
@@ -106,7 +107,7 @@ def mesh_settings(cell: str | None, cells: str | None, default: MeshSettings) ->
     if cell is not None:
         return replace(default, wall_cell=positive("--cell", cell, "m"), target_cells=None)
     if cells is not None:
-        return replace(default, target_cells=round(positive("--cells", cells, "cells")))
+        return replace(default, target_cells=count("--cells", cells, "cells"))
     return default
 
 
