@@ -218,7 +218,9 @@ def _inclination(
     from spaceplane.aero.inclination.case import run_inclination
     from spaceplane.vehicle.stl import read_stl
 
-    records = run_inclination(read_stl(body), *grid, reference, name).records
+    surface = read_stl(body)
+    with progress_bar() as tell:
+        records = run_inclination(surface, *grid, reference, name, tell).records
     write_json(records, json_file)
     if str(json_file) != "-":
         from spaceplane.report.summary import print_flow

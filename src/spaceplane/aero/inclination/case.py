@@ -10,9 +10,11 @@ import xarray as xr
 
 from spaceplane.aero.conditions import product
 from spaceplane.aero.flow_case import condition_record
+from spaceplane.aero.inclination.compiled import CACHE
 from spaceplane.aero.inclination.settings import method
 from spaceplane.aero.inclination.solve import local_inclination
 from spaceplane.aero.integrate import Reference
+from spaceplane.progress import Progress
 from spaceplane.vehicle.surface import Surface
 
 
@@ -36,6 +38,7 @@ def run_inclination(
     betas: Sequence[float],
     reference: Reference,
     name: str = "newtonian-expansion",
+    progress: Progress | None = None,
 ) -> InclinationCase:
     """Every combination of Mach number, angle of attack and sideslip by one method of local inclination.
 
@@ -49,15 +52,21 @@ def run_inclination(
         betas: sideslip angles, rad.
         reference: area, chord, span and moment centre, SI.
         name: of the method, see `settings.METHODS`.
+        progress: called with (phase, done, total, text) when kernels have to be compiled.
 
     Raises:
         InputError: a bad condition or an unknown method.
     """
     settings = method(name)
     conditions = product(list(machs), list(alphas), list(betas))
+    cold = not CACHE.is_complete(name)
+    if cold and progress:
+        progress("compile", 0, 1, "compiling kernels (once, some seconds)")
     began = time.perf_counter()
     coefficients = local_inclination(body, conditions, reference, settings)
     seconds = (time.perf_counter() - began) / len(conditions)
+    if cold:
+        CACHE.mark_complete(name)
     records = [
         condition_record(
             coefficients,
