@@ -10,6 +10,7 @@ import math
 import numpy as np
 
 from spaceplane.errors import InputError
+from spaceplane.vehicle.solids import solid_of, welded
 from spaceplane.vehicle.surface import Surface
 
 M6_ROOT_CHORD, M6_SEMI_SPAN, M6_TAPER = 0.8059, 1.1963, 0.562
@@ -174,37 +175,20 @@ def union(body: Surface, others: list[Surface]) -> Surface:
     """Closed surface of a body and others that stick out of it; equal part names are one part.
 
     Raises:
-        InputError: a surface that is not closed.
+        GeometryError: a surface that is not closed.
     """
     import manifold3d
 
     names = tuple(dict.fromkeys(name for surface in (body, *others) for name in surface.part_names))
-    solids = [_tagged(surface, names) for surface in (body, *others)]
+    solids = []
+    for surface in (body, *others):
+        number = np.array([names.index(name) for name in surface.part_names])
+        what = " and ".join(surface.part_names)
+        solids.append(solid_of(surface.points, surface.triangles, what, number[surface.part]))
     mesh = manifold3d.Manifold.batch_boolean(solids, manifold3d.OpType.Add).to_mesh64()
-    points, triangles = np.array(mesh.vert_properties[:, :3]), mesh.tri_verts.astype(np.int64)
-    if len(mesh.merge_from_vert):
-        target = np.arange(len(points))
-        target[mesh.merge_from_vert] = mesh.merge_to_vert
-        triangles = target[triangles]
+    points, triangles = welded(mesh)
     used, compact = np.unique(triangles, return_inverse=True)
     return Surface(points[used], compact.reshape(-1, 3).astype(np.int64), np.array(mesh.face_id, dtype=np.int32), names)
-
-
-def _tagged(surface: Surface, names: tuple[str, ...]):
-    """manifold3d solid whose triangles carry the place of their part in `names`."""
-    import manifold3d
-
-    number = np.array([names.index(name) for name in surface.part_names])
-    solid = manifold3d.Manifold(
-        manifold3d.Mesh64(
-            np.ascontiguousarray(surface.points),
-            np.ascontiguousarray(surface.triangles.astype(np.uint64)),
-            face_id=number[surface.part].astype(np.uint64),
-        )
-    )
-    if solid.status() != manifold3d.Error.NoError:
-        raise InputError(f"{surface.part_names}: not a closed surface ({solid.status().name})")
-    return solid
 
 
 def m6(stations: int = 24) -> Surface:

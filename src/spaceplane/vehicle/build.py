@@ -25,6 +25,7 @@ from spaceplane.vehicle.fuselage import fuselage_shell, nose_end
 from spaceplane.vehicle.layout import Layout
 from spaceplane.vehicle.lofts import Shell
 from spaceplane.vehicle.shape import ShapeParameters
+from spaceplane.vehicle.solids import solid_of, welded
 from spaceplane.vehicle.surface import Surface
 from spaceplane.vehicle.validity import GeometryError, check
 from spaceplane.vehicle.wing import wing_shell
@@ -107,12 +108,7 @@ def _half(
     _refuse_overlap(centre, solids, flaps)
     half = centre + (solids.wing + flaps["elevon"] + flaps["rudder"])
     mesh = half.to_mesh64()
-    points = np.array(mesh.vert_properties[:, :3])
-    triangles = mesh.tri_verts.astype(np.int64)
-    if len(mesh.merge_from_vert):
-        target = np.arange(len(points))
-        target[mesh.merge_from_vert] = mesh.merge_to_vert
-        triangles = target[triangles]
+    points, triangles = welded(mesh)
     points[np.abs(points[:, 1]) < 1e-9, 1] = 0.0
     runs = np.repeat(mesh.run_original_id, np.diff(mesh.run_index) // 3)
     part = np.full(len(triangles), _FUSELAGE)
@@ -154,19 +150,8 @@ def _seal_volume(hinge: Hinge) -> float:
 
 
 def _solid(shell: Shell, what: str):
-    """manifold3d solid of a shell.
-
-    Raises:
-        GeometryError: the shell is not a closed oriented surface.
-    """
-    import manifold3d
-
-    solid = manifold3d.Manifold(
-        manifold3d.Mesh64(np.ascontiguousarray(shell.points), np.ascontiguousarray(shell.triangles.astype(np.uint64)))
-    )
-    if solid.status() != manifold3d.Error.NoError or solid.volume() <= 0:
-        raise GeometryError(f"{what}: these parameters give no closed solid ({solid.status().name})")
-    return solid.as_original()
+    """manifold3d solid of a shell, which can be told apart in unions; a GeometryError where it is not closed."""
+    return solid_of(shell.points, shell.triangles, what).as_original()
 
 
 def _joined(right: tuple, left: tuple) -> Surface:
