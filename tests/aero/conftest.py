@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
 
 from spaceplane.flow.solution import ConvergenceRecord, FlowConditions, Solution
 from spaceplane.mesh.mesh import Mesh
+
+from .walls import wall_mesh
 
 PARTS = ("fuselage", "wing_left", "wing_right")
 
@@ -38,31 +40,10 @@ def make_box_mesh(size=(4.0, 2.0, 1.0), cells=(8, 4, 3), parts=PARTS) -> Mesh:
             centers.append(center)
             areas.append(area)
     center, area = np.concatenate(centers), np.concatenate(areas)
-    count = len(center)
-    part = np.zeros(count, dtype=np.int32)
+    part = np.zeros(len(center), dtype=np.int32)
     if len(parts) == 3:
         part = np.select([center[:, 1] < -0.5, center[:, 1] > 0.5], [1, 2], 0).astype(np.int32)
-    none, flat = np.zeros((0, 3)), np.zeros(0, dtype=np.int32)
-    own = np.arange(count, dtype=np.int32)
-    return Mesh(
-        cell_volume=np.ones(count),
-        cell_center=center.copy(),
-        cell_size=np.ones(count),
-        face_cells=np.zeros((0, 2), dtype=np.int32),
-        face_area=none,
-        face_center=none,
-        wall_cell=own,
-        wall_area=area,
-        wall_center=center,
-        far_cell=flat,
-        far_area=none,
-        far_center=none,
-        piece_wall=own,
-        piece_area=area.copy(),
-        piece_center=center.copy(),
-        piece_part=part,
-        part_names=parts,
-    )
+    return replace(wall_mesh(center, area, np.zeros((0, 2)), part), part_names=parts)
 
 
 def solve_by_hand(mesh, pressure_cp, mach=2.0, alpha=0.0, beta=0.0, verdicts=None, spread=0.0) -> Solution:

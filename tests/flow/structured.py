@@ -108,8 +108,13 @@ def box(n: int | tuple[int, int, int], perturb: float = 0.0, seed: int = 1) -> M
 def sphere(radial: int, side: int, radius: float = 1.0, far: float = 8.0) -> Mesh:
     """Sphere in a ball: six patches of a projected cube, `side` cells along each cube edge, `radial` layers, no
     pole."""
-    angle = np.tan(np.linspace(-np.pi / 4, np.pi / 4, side + 1))
     r = np.geomspace(radius, far, radial + 1)
+    return from_blocks(sphere_blocks(r, side), lambda c: np.linalg.norm(c, axis=1) < 0.5 * (r[0] + r[1]))
+
+
+def sphere_blocks(r: np.ndarray, side: int) -> list[np.ndarray]:
+    """Points [i, j, k, xyz] of the six patches of a projected cube at the radii `r` [k]."""
+    angle = np.tan(np.linspace(-np.pi / 4, np.pi / 4, side + 1))
     blocks = []
     for axis in range(3):
         for sign in (-1.0, 1.0):
@@ -118,7 +123,7 @@ def sphere(radial: int, side: int, radius: float = 1.0, far: float = 8.0) -> Mes
             direction[..., axis], direction[..., (axis + 1) % 3], direction[..., (axis + 2) % 3] = sign, a, b
             direction /= np.linalg.norm(direction, axis=-1, keepdims=True)
             blocks.append(direction[:, :, None, :] * r[None, None, :, None])
-    return from_blocks(blocks, lambda c: np.linalg.norm(c, axis=1) < 0.5 * (r[0] + r[1]))
+    return blocks
 
 
 def cone(along: int, across: int, around: int, half_angle: float, outer_angle: float) -> Mesh:
@@ -126,12 +131,7 @@ def cone(along: int, across: int, around: int, half_angle: float, outer_angle: f
 
     The planes y = 0 and z = 0 are slip walls, as symmetry wants them.
     """
-    x = np.linspace(0.0, 1.0, along + 1)
-    angle = np.linspace(half_angle, outer_angle, across + 1)
-    turn = np.linspace(0.0, np.pi / 2, around + 1)
-    xx, aa, tt = np.meshgrid(x, angle, turn, indexing="ij")
-    r = xx * np.tan(aa)
-    points = np.stack([xx, r * np.cos(tt), r * np.sin(tt)], axis=-1)
+    points = cone_block(along, across, around, half_angle, outer_angle)
     gap = 1e-6
 
     def is_wall(c: np.ndarray) -> np.ndarray:
@@ -140,6 +140,16 @@ def cone(along: int, across: int, around: int, half_angle: float, outer_angle: f
         return (c[:, 1] < gap) | (c[:, 2] < gap) | (on_cone & (c[:, 0] < 1.0 - gap))
 
     return from_blocks([points], is_wall)
+
+
+def cone_block(along: int, across: int, around: int, half_angle: float, outer_angle: float) -> np.ndarray:
+    """Points [i, j, k, xyz] of a quarter of the air about a cone of unit length; angles in rad."""
+    x = np.linspace(0.0, 1.0, along + 1)
+    angle = np.linspace(half_angle, outer_angle, across + 1)
+    turn = np.linspace(0.0, np.pi / 2, around + 1)
+    xx, aa, tt = np.meshgrid(x, angle, turn, indexing="ij")
+    r = xx * np.tan(aa)
+    return np.stack([xx, r * np.cos(tt), r * np.sin(tt)], axis=-1)
 
 
 def annulus(n: int, inner: float = 1.0, outer: float = 1.384) -> Mesh:

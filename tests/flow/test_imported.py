@@ -112,18 +112,10 @@ def test_a_free_stream_through_the_plane_of_symmetry_is_refused(tmp_path):
 
 def half_sphere(path, side: int = 12, radial: int = 24) -> Mesh:
     """The half y > 0 of a unit sphere out to 8 radii, in hexahedra, written by meshio as Gmsh's format and read."""
-    angle = np.tan(np.linspace(-np.pi / 4, np.pi / 4, side + 1))
-    r = np.geomspace(1.0, 8.0, radial + 1)
     points, number = [], []
-    for axis in range(3):
-        for sign in (-1.0, 1.0):
-            a, b = np.meshgrid(angle, sign * angle, indexing="ij")
-            direction = np.empty((side + 1, side + 1, 3))
-            direction[..., axis], direction[..., (axis + 1) % 3], direction[..., (axis + 2) % 3] = sign, a, b
-            direction /= np.linalg.norm(direction, axis=-1, keepdims=True)
-            block = direction[:, :, None, :] * r[None, None, :, None]
-            number.append(sum(len(p) for p in points) + np.arange(block[..., 0].size).reshape(block.shape[:3]))
-            points.append(block.reshape(-1, 3))
+    for block in structured.sphere_blocks(np.geomspace(1.0, 8.0, radial + 1), side):
+        number.append(sum(len(p) for p in points) + np.arange(block[..., 0].size).reshape(block.shape[:3]))
+        points.append(block.reshape(-1, 3))
     every = np.concatenate(points)
     _, first, unique = np.unique(np.round(every * 1e8), axis=0, return_index=True, return_inverse=True)
     every = every[first]

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from flow.structured import cone_block
 from spaceplane.mesh.elements import FACES, Elements
 
 CUBE = np.array([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)])
@@ -94,13 +95,8 @@ def cone(along: int, across: int, around: int, half_angle: float, outer_angle: f
 
     Hexahedra at the apex are collapsed. Markers: cone, sym_y, sym_z, farfield.
     """
-    x = np.linspace(0.0, 1.0, along + 1)
-    angle = np.linspace(half_angle, outer_angle, across + 1)
-    turn = np.linspace(0.0, np.pi / 2, around + 1)
-    xx, aa, tt = np.meshgrid(x, angle, turn, indexing="ij")
-    r = xx * np.tan(aa)
-    block = np.stack([xx, r * np.cos(tt), r * np.sin(tt)], axis=-1)
-    number = np.arange(xx.size).reshape(xx.shape)
+    block = cone_block(along, across, around, half_angle, outer_angle)
+    number = np.arange(block[..., 0].size).reshape(block.shape[:3])
     number[0] = 0  # all of them the apex
     used, compact = np.unique(number, return_inverse=True)
     points = block.reshape(-1, 3)[used]
