@@ -125,19 +125,13 @@ def flow(
     solver_precision = options.precision(precision)
     increments = options.increment_settings(friction, base, wall_temperature, emissivity, transition_reynolds)
     ambient = _ambient(altitude, friction, any(turning))
-    names = {"wall": wall, "far": far, "symmetry": symmetry}
+    roles = {"wall": wall, "far": far, "symmetry": symmetry}
+    mesh_options = {"--cell": cell, "--cells": cells, "--domain": domain}
     if mesh_file is None:
-        _refuse_options({f"--{role}": text for role, text in names.items()}, "only allowed with --mesh")
-        if body is None:
-            raise InputError("BODY.stl: missing; give it, or a mesh with --mesh FILE")
-        existing_file(body, "an STL file")
+        _check_body(body, roles)
     else:
-        if method != EULER:
-            raise InputError(f"--method: {method}, not allowed with --mesh: local inclination takes a surface")
-        given = {"BODY.stl": body, "--cell": cell, "--cells": cells, "--domain": domain}
-        _refuse_options(given, "not allowed with --mesh, whose mesh is taken as it is")
-        existing_file(mesh_file, "a .su2 or .msh file")
-    chosen = {role: list_of_names(f"--{role}", text) for role, text in names.items()}
+        _check_mesh_file(mesh_file, {"BODY.stl": body, **mesh_options}, method)
+    chosen = {role: list_of_names(f"--{role}", text) for role, text in roles.items()}
     writable_file(json_file, "--json")
     writable_file(vtu, "--vtu", (".vtu",))
     writable_file(vtp, "--vtp", (".vtp",))
@@ -145,11 +139,11 @@ def flow(
 
     reference = ReferenceLengths(**lengths, moment_center=center)
     if method != EULER:
-        given = {"--cell": cell, "--cells": cells, "--domain": domain, "--vtu": vtu, "--vtp": vtp}
-        given |= {"--rates": rates} if any(turning) else {}
-        given |= {"--friction": friction} if friction != "off" else {}
-        given |= {"--base": base} if base != "inviscid" else {}
-        given |= {"--precision": precision} if solver_precision != "single" else {}
+        given = {**mesh_options, "--vtu": vtu, "--vtp": vtp}
+        given["--rates"] = rates if any(turning) else None
+        given["--friction"] = friction if friction != "off" else None
+        given["--base"] = base if base != "inviscid" else None
+        given["--precision"] = precision if solver_precision != "single" else None
         _refuse_options(given, f"allowed with --method {EULER} only")
         return _inclination(body, method, (machs, alphas, betas), reference, json_file)
     from spaceplane.flow.settings import FlowSettings
@@ -182,6 +176,11 @@ def flow(
         with progress_bar() as tell:
             case = run_on_mesh(imported.mesh, machs, alphas, betas, reference, settings, tell, **extra)
     _write(case, surface, imported, vtu, vtp)
+    return _tell(case, json_file)
+
+
+def _tell(case: FlowCase, json_file: Path | None) -> int:
+    """Write the records, print them with what is wrong, and return the exit code."""
     write_json(case.records, json_file)
     for warning in case.mesh.record.get("warnings") or ():
         typer.echo(f"warning: {warning}", err=True)
@@ -194,6 +193,22 @@ def flow(
         where = f"Mach {r['mach']:g}, alpha {r['alpha_deg']:g} deg, beta {r['beta_deg']:g} deg"
         typer.echo(f"not good: {where}: {r['verdict']}: {r['reason']}", err=True)
     return 1 if bad else 0
+
+
+def _check_body(body: Path | None, roles: dict[str, str | None]) -> None:
+    """Refuse a missing body, and markers (by role) where there is no mesh that has any."""
+    _refuse_options({f"--{role}": text for role, text in roles.items()}, "only allowed with --mesh")
+    if body is None:
+        raise InputError("BODY.stl: missing; give it, or a mesh with --mesh FILE")
+    existing_file(body, "an STL file")
+
+
+def _check_mesh_file(mesh_file: Path, given: dict[str, object], method: str) -> None:
+    """Refuse a missing mesh, and what does not go with one."""
+    if method != EULER:
+        raise InputError(f"--method: {method}, not allowed with --mesh: local inclination takes a surface")
+    _refuse_options(given, "not allowed with --mesh, whose mesh is taken as it is")
+    existing_file(mesh_file, "a .su2 or .msh file")
 
 
 def _ambient(altitude: str | None, friction: str, turns: bool) -> Ambient:
