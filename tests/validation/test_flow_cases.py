@@ -81,6 +81,14 @@ def test_impact_theory_agrees_with_the_hypersonic_tables():
     assert max(abs(record.deviation) for record in records) < 0.1
 
 
+def test_finner_on_the_coarse_mesh_has_the_measured_derivatives():
+    """All inside their bands; the pitch damping, which rests on steady rotation, pinned to what it is."""
+    records = validation.run(["finner"], fine=False)
+    assert len(records) == 6 and all(record.within for record in records)
+    damping = [record.computed for record in records if record.quantity.startswith("C_m_q")]
+    assert damping == pytest.approx([-366.9, -252.0], rel=0.01)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("case", validation.CASES)
 def test_every_judged_row_on_fine_meshes(case):
