@@ -33,8 +33,16 @@ SOURCES = {
 """Where a coefficient comes from, in words."""
 
 # physics: C_m_alpha < 0, C_n_beta > 0, C_l_beta < 0 and C_Y_beta < 0 are the stable signs, and rates are damped.
-STABLE_SIGN = {"Cm_alpha": -1, "Cn_beta": 1, "Cl_beta": -1, "CY_beta": -1, "CL_alpha": 1}
-STABLE_SIGN |= {"Cl_p": -1, "Cm_q": -1, "Cn_r": -1}
+STABLE_SIGN = {
+    "CL_alpha": 1,
+    "Cm_alpha": -1,
+    "CY_beta": -1,
+    "Cl_beta": -1,
+    "Cn_beta": 1,
+    "Cl_p": -1,
+    "Cm_q": -1,
+    "Cn_r": -1,
+}
 
 _STATE_NAMES = {
     "V": "speed",

@@ -24,8 +24,10 @@ if TYPE_CHECKING:
 
 COLOURS = {"good": "green", "fair": "yellow", "poor": "dark_orange", "bad": "red"}
 COEFFICIENT_ROWS = ("CL", "CD", "L_over_D", "Cm")
-DERIVATIVE_ROWS = ("CL_alpha", "CD_alpha", "Cm_alpha", "CY_beta", "Cl_beta", "Cn_beta", "CL_M", "CD_M", "Cm_M")
-DERIVATIVE_ROWS += ("Cl_p", "Cm_q", "Cn_r")
+DERIVATIVE_ROWS = (
+    *("CL_alpha", "CD_alpha", "Cm_alpha", "CY_beta", "Cl_beta", "Cn_beta"),
+    *("CL_M", "CD_M", "Cm_M", "Cl_p", "Cm_q", "Cn_r"),
+)
 SIGN_COLOURS = {"stable": "green", "unstable": "red", "undecided": "yellow", "": ""}
 
 
