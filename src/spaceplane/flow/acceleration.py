@@ -11,12 +11,9 @@ import math
 import numpy as np
 from numba import prange
 
+from spaceplane.flow.bounds import bounded
 from spaceplane.flow.compiled import LANES, PRS, RHO, ROW, VX, VY, VZ, distinct, inlined, kernel
 from spaceplane.flow.topology import Topology
-
-THINNEST = 1e-3
-"""Least density and pressure, on the free stream's: bases at Mach 10 pull a vacuum that single precision cannot hold.
-At Mach 3 it is 1.6e-4 in Cp, at Mach 10 1.4e-5."""
 
 SLOWEST = 0.02
 """Least share of the CFL number that a cell marches with."""
@@ -158,13 +155,12 @@ def step_chunk(
         for m in range(ROW):
             step[m] = factor[m] * step[m] if factor[m] > zero else zero
         for n in range(LANES):
-            r = rows[i, RHO + n] + step[RHO + n]
+            dr, dp = bounded(rows[i, RHO + n], rows[i, PRS + n], step[RHO + n], step[PRS + n], gamma)
+            r = rows[i, RHO + n] + dr
             u = rows[i, VX + n] + step[VX + n]
             v = rows[i, VY + n] + step[VY + n]
             w = rows[i, VZ + n] + step[VZ + n]
-            p = rows[i, PRS + n] + step[PRS + n]
-            r = max(r, real(THINNEST))
-            p = max(p, real(THINNEST) / gamma)
+            p = rows[i, PRS + n] + dp
             cool = cooling(u, v, w, r, p, gamma, ceiling[n])
             slow = math.sqrt(cool)
             step[RHO + n] = r - rows[i, RHO + n]
@@ -184,9 +180,10 @@ def apply_step(
     """state += change - sum of weights[slot, 5 x lane] combined[:, slot], held within physical bounds cell by cell.
 
     The step is scaled so that density and pressure fall by at most `largest` of themselves and rise by twice that, and
-    left out where it is not a number; no density or pressure falls below `THINNEST`; then the total enthalpy is brought
-    down to `ceiling` [lane] at unchanged density and Mach number. Steady flow has the free stream's total enthalpy
-    everywhere, so that the ceiling acts on transients only: in them, large steps would heat wakes until they break.
+    left out where it is not a number; no density or pressure falls below `bounds.THINNEST`; then the total enthalpy is
+    brought down to `ceiling` [lane] at unchanged density and Mach number. Steady flow has the free stream's total
+    enthalpy everywhere, so that the ceiling acts on transients only: in them, large steps would heat wakes until they
+    break.
 
     Keeps the change and the step for the next call. `limited` [chunk, lane] counts cells whose step was scaled; their
     `pace` [cell, lane], a factor on the CFL number, is halved, while that of the others grows back to 1: a few cells in

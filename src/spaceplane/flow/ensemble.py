@@ -98,7 +98,7 @@ class Ensemble:
         self.reconstruct()
         self.balance()
         sums = np.empty((len(self.topology.chunk_cells) - 1, LANES))
-        implicit.squared_norms(self.topology, self.residual, sums)
+        implicit.squared_norms(self.topology, self.state, self.residual, self.gamma, sums)
         return np.sqrt(sums.sum(axis=0))
 
     def reconstruct(self) -> None:

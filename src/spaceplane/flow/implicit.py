@@ -11,6 +11,7 @@ import math
 import numpy as np
 from numba import prange
 
+from spaceplane.flow.bounds import at_bound, bounded
 from spaceplane.flow.compiled import LANES, PRS, RHO, ROW, VX, VY, VZ, distinct, inlined, kernel
 from spaceplane.flow.jacobian import dissipation_increment, face_average, flux_increment, wave_dissipation
 
@@ -342,6 +343,10 @@ def sweep_block(topology, first, count, rows, sensor, residual, inverse, change,
                     + inverse[i, (5 * k + 3) * LANES + n] * rhs[VZ + n]
                     + inverse[i, (5 * k + 4) * LANES + n] * rhs[PRS + n]
                 )
+        for n in range(LANES):
+            dr, dp = bounded(rows[i, RHO + n], rows[i, PRS + n], change[i, RHO + n], change[i, PRS + n], gamma)
+            change[i, RHO + n] = dr
+            change[i, PRS + n] = dp
 
 
 @kernel
@@ -353,6 +358,10 @@ def sweep(topology, state, sensor, residual, inverse, change, passed, gamma, for
     before, in the other direction, formed with the same changes: it left them in `passed` [cell, 5, lane], zero before
     the first forward pass, so that two passes cost one
     (P. Knabner, L. Angermann, Numerical Methods for Elliptic and Parabolic Partial Differential Equations, 5.1).
+    A change that would take density or pressure below their bounds stops there (projected Gauss-Seidel: O. L.
+    Mangasarian, J. Optim. Theory Appl. 22 (1977) 465-485): neighbours of a cell at its bound must not count on more,
+    or the march comes to rest where the residual does not.
+
     Blocks of one colour do not touch, so that the result does not depend on the number of threads.
     """
     cells = state.shape[0]
@@ -379,8 +388,11 @@ def sweep(topology, state, sensor, residual, inverse, change, passed, gamma, for
 
 
 @kernel
-def squared_norms(topology, residual, out):
-    """Fill `out` [chunk, lane] (fp64) with the sum of (net mass outflow)^2/volume over the chunk's cells."""
+def squared_norms(topology, state, residual, gamma, out):
+    """Fill `out` [chunk, lane] (fp64) with the sum of (net mass outflow)^2/volume over the chunk's cells.
+
+    Cells at the least density or pressure do not count: the bound, not the balance, holds them.
+    """
     chunk_cells = topology.chunk_cells
     for chunk in prange(chunk_cells.shape[0] - 1):
         total = np.zeros(LANES, np.float64)
@@ -388,5 +400,6 @@ def squared_norms(topology, residual, out):
             scale = 1.0 / topology.volume[i]
             for n in range(LANES):
                 value = np.float64(residual[i, 0, n])
+                value = 0.0 if at_bound(state[i, 0, n], state[i, 4, n], gamma) else value
                 total[n] += value * value * scale
         out[chunk] = total

@@ -14,8 +14,9 @@ from spaceplane.flow.rotation import add_turning, carry_back, face_speed, follow
 
 @inlined
 def guarded(value, new):
-    """`new`, or `value` where that would fall below a fifth of it: densities and pressures stay positive."""
-    return new if new > type(value)(0.2) * value else value
+    """`new`, but at least a fifth of `value`: densities and pressures stay positive. Without a jump, which would leave
+    strong expansions without a steady state."""
+    return max(new, type(value)(0.2) * value)
 
 
 @inlined
