@@ -57,7 +57,7 @@ class FlowSettings:
     cfl_start: float = 25.0
     cfl_max: float = 100.0
     sweeps: int = 2
-    anderson_depth: int = 5
+    anderson_depth: int = 3
     iterations: int = 150
     coarse_iterations: int = 60
     coarse_levels: int = 3
