@@ -1,6 +1,6 @@
 """Compare what the stopping rule gives with runs that go on for ten times as long: HORUS-2B, 16 conditions.
 
-Example: python scripts/check_stopping.py --cell 0.25 --json stopping.json
+Example: python scripts/check_stopping.py --cell 0.25 --json docs/data/stopping.json --plot docs/images/convergence.png
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import numpy as np
 
 from spaceplane.analysis.settings import DEFLECTIONS_TAEM
 from spaceplane.flow.settings import FlowSettings
-from spaceplane.flow.solution import FlowConditions
+from spaceplane.flow.solution import FlowConditions, Solution
 from spaceplane.flow.solve import solve
 from spaceplane.mesh.generate import generate
 from spaceplane.mesh.settings import MeshSettings
@@ -22,6 +22,7 @@ from spaceplane.vehicle.build import build
 from spaceplane.vehicle.presets import horus_2b
 
 MACH, ALPHA_DEG = (0.5, 0.8, 0.95, 1.2, 1.5, 2.5, 5.0, 10.0), (5.0, 15.0)
+SHOWN_ITERATIONS = 200
 NEVER = 16.0
 """Decades that no run reaches: it ends when its residual has stood still."""
 
@@ -33,6 +34,7 @@ def main() -> None:
     parser.add_argument("--iterations", type=int, default=450, help="most iterations of the long run")
     parser.add_argument("--precision", choices=("single", "double"), default="single", help="of the long run")
     parser.add_argument("--json", type=Path, help="write every record here")
+    parser.add_argument("--plot", type=Path, help="draw the histories of the long run here, PNG")
     options = parser.parse_args()
 
     mesh = generate(build(horus_2b().shape, DEFLECTIONS_TAEM), MeshSettings(wall_cell=options.cell))
@@ -59,6 +61,7 @@ def main() -> None:
                 "force_percent": 100.0 * float(np.linalg.norm(one.window_mean - force) / np.linalg.norm(force)),
                 "axial_percent": 100.0 * float(one.window_mean[0] / force[0] - 1.0),
                 "normal_percent": 100.0 * float(one.window_mean[2] / force[2] - 1.0),
+                "spread_percent": 100.0 * float(one.window_spread.max() / np.linalg.norm(force)),
             }
         )
     print(f"{mesh.cells} cells")
@@ -70,7 +73,42 @@ def main() -> None:
             f"{r['force_percent']:10.3f} {r['axial_percent']:+.3f} {r['normal_percent']:+.3f}"
         )
     if options.json:
-        options.json.write_text(json.dumps({"cells": mesh.cells, "rows": rows}, indent=1))
+        options.json.write_text(json.dumps({"cells": mesh.cells, "rows": rows}, indent=1) + "\n", encoding="utf-8")
+    if options.plot:
+        plot(conditions, usual, long, options.plot)
+
+
+def plot(conditions: FlowConditions, usual: Solution, long: Solution, path: Path) -> None:
+    """Residual and distance of the force from its last mean, by iteration; dots where the stopping rule ends a run."""
+    import matplotlib
+
+    matplotlib.use("Agg")
+    from matplotlib import pyplot
+
+    figure, (upper, lower) = pyplot.subplots(2, 1, figsize=(8.0, 8.0), sharex=True, layout="constrained")
+    colours = pyplot.get_cmap("viridis")(np.linspace(0.0, 0.95, len(MACH)))
+    shown = min(max(len(record.residual_history) for record in long.records), SHOWN_ITERATIONS)
+    for i, (one, other) in enumerate(zip(usual.records, long.records, strict=True)):
+        style = {"color": colours[i // len(ALPHA_DEG)], "linestyle": "-" if i % len(ALPHA_DEG) else "--", "lw": 1.2}
+        mach, alpha = conditions.mach[i], math.degrees(conditions.alpha[i])
+        residual = other.residual_history[:shown]
+        force = other.force_history
+        away = np.linalg.norm(force - other.window_mean, axis=1) / np.linalg.norm(other.window_mean)
+        upper.plot(residual, label=f"Mach {mach:g}, {alpha:.0f} deg", **style)
+        lower.semilogy(100.0 * np.maximum(away[:shown], 1e-6), **style)
+        stop = one.iterations
+        if stop < len(residual):
+            upper.plot(stop, residual[stop], "o", color=style["color"], ms=5)
+            lower.semilogy(stop, max(100.0 * away[stop], 1e-4), "o", color=style["color"], ms=5)
+    upper.set_ylabel("density residual, decades")
+    upper.legend(fontsize=7, ncols=2)
+    lower.axhline(0.1, color="grey", lw=0.8)
+    lower.set_ylim(1e-4, 1e2)
+    lower.set_ylabel("force: distance from its last mean, %")
+    lower.set_xlabel("iterations on the fine mesh")
+    for axes in (upper, lower):
+        axes.grid(alpha=0.3)
+    figure.savefig(path, dpi=110)
 
 
 if __name__ == "__main__":

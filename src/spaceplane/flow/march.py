@@ -19,6 +19,9 @@ ACCELERATED_BELOW_MACH, ACCELERATED_AFTER_DROP = 2.0, 2.0
 HOLD_SENSOR_AFTER = 20
 """Iterations after which, while the residual is near its best, the shock sensor may only rise: cells stop flipping."""
 
+FAST_FALL = 0.3
+"""Decades by which a residual must fall in a window to be worth waiting for, once the forces stand."""
+
 REJECTED_RISE = 2.5
 """A step after which the residual is this many times the last one is taken back."""
 
@@ -42,6 +45,10 @@ class History:
             return 0.0
         first, last = self.residual[0], self.residual[-1]
         return float(np.log10(max(first, 1e-300) / max(last, 1e-300)))
+
+    def fall(self, window: int) -> float:
+        """Decades that the residual has fallen over the last `window` iterations; there must be more than those."""
+        return float(np.log10(max(self.residual[-1 - window], 1e-300) / max(self.residual[-1], 1e-300)))
 
     def spread(self, window: int) -> float:
         """Half peak-to-peak of the force over the last `window` iterations, on the mean force's size."""
@@ -131,8 +138,9 @@ class Steering:
 def converged(history: History, settings: FlowSettings) -> bool:
     """Whether a condition is good on the fine mesh: residual and force window together.
 
-    Either the residual fell by `residual_drop` with forces within twice the tolerance, or by half a decade more than
-    `least_drop` with forces standing over two windows, or by `least_drop` with forces standing over three.
+    Either the residual fell by `residual_drop` with forces within twice the tolerance; or, where it falls slowly, by half
+    a decade more than `least_drop` with forces standing over two windows, or by `least_drop` with forces standing over
+    three. A residual that falls fast is let fall: the rest costs little.
     """
     window, tolerance, drop = settings.window, settings.force_tolerance, history.drop()
     length = len(history.residual)
@@ -140,6 +148,8 @@ def converged(history: History, settings: FlowSettings) -> bool:
         return False
     if drop >= settings.residual_drop:
         return history.spread(window) < 2 * tolerance
+    if history.fall(window) > FAST_FALL:
+        return False
     if drop >= settings.least_drop + 0.5:
         return length > 2 * window and history.spread(2 * window) < tolerance
     return drop >= settings.least_drop and length > 3 * window and history.spread(3 * window) < tolerance

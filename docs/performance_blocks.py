@@ -1,0 +1,128 @@
+"""The generated blocks of the pages on speed and on convergence.
+
+From docs/data/benchmark.json (benchmarks/run.py --json) and docs/data/stopping.json (scripts/check_stopping.py).
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+
+from blocks import DATA, table
+
+KERNELS = ("gradients", "fluxes", "diagonals", "sweeps", "update")
+
+
+def figures(part: str) -> tuple[str, dict[str, float]]:
+    """(machine and size, figures) of one part of the benchmark."""
+    stored = json.loads((DATA / "benchmark.json").read_text(encoding="utf-8"))["figures"]
+    name = next(name for name in stored if name.startswith(part + ":"))
+    return name.partition(": ")[2], stored[name]
+
+
+def stages() -> str:
+    """Seconds by stage."""
+    size, f = figures("stages")
+    rows = [
+        (name, f"{f[key]:.1f} s")
+        for name, key in (("geometry", "geometry_s"), ("mesh", "mesh_s"), ("flow", "solver_s"))
+    ]
+    rows += [
+        ("all", f"{f['total_s']:.1f} s"),
+        ("peak memory", f"{f['peak_memory_gb']:.2f} GB"),
+        ("conditions converged", f"{f['converged']:.0f} of {f['conditions']:.0f}"),
+        ("least fall of a residual", f"{f['least_decades']:.1f} decades"),
+        ("iterations on the fine mesh, mean", f"{f['fine_iterations_mean']:.0f}"),
+    ]
+    return f"{size}; {f['cells']:.0f} cells came out.\n\n" + table(("", ""), rows)
+
+
+def roofline() -> str:
+    """Bytes, operations and shares of the machine by kernel."""
+    size, f = figures("roofline")
+    head = ("kernel", "ns", "bytes", "operations", "operations/byte", "of the bandwidth", "of the speed", "limited by")
+    rows = []
+    for kernel in KERNELS:
+        ns, moved, done = (f[f"{kernel} {key}"] for key in ("ns", "bytes", "flops"))
+        band, speed = f[f"{kernel} of_bandwidth"], f[f"{kernel} of_speed"]
+        counted = done > 0
+        rows.append(
+            (
+                kernel,
+                f"{ns:.1f}",
+                f"{moved:.0f}",
+                f"{done:.0f}" if counted else "-",
+                f"{done / moved:.1f}" if counted else "-",
+                f"{100 * band:.0f} %",
+                f"{100 * speed:.0f} %" if counted else "-",
+                "memory" if band > speed else "arithmetic",
+            )
+        )
+    text = (
+        f"{size}; {f['cells']:.0f} cells; per cell, condition and iteration. The machine: "
+        f"{f['bandwidth_gb_per_s']:.1f} GB/s, {f['speed_gflop_per_s']:.0f} GFlop/s in single precision, both measured. "
+        f"The residual (gradients and fluxes) reaches {100 * f['residual of_bandwidth']:.0f} % of the bandwidth and "
+        f"{100 * f['residual of_speed']:.0f} % of the speed."
+    )
+    return text + "\n\n" + table(head, rows)
+
+
+def scaling() -> str:
+    """Time and memory by cells, time by conditions."""
+    size, f = figures("scaling")
+    sizes = [int(key.split()[0]) for key in f if key.endswith(" iteration_s")]
+    rows = [
+        (
+            f"{cells:,}".replace(",", " "),
+            f"{f[f'{cells} mesh_s']:.2f} s",
+            f"{f[f'{cells} iteration_s']:.2f} s",
+            f"{f[f'{cells} ns_per_cell_and_iteration']:.0f} ns",
+            f"{f[f'{cells} peak_memory_gb']:.2f} GB",
+        )
+        for cells in sizes
+    ]
+    counts = [key.split()[0] for key in f if key.endswith("conditions solver_s")]
+    alone = f["1 conditions solver_s"]
+    by_count = [
+        (count, f"{f[f'{count} conditions solver_s']:.1f} s", f"{f[f'{count} conditions solver_s'] / alone:.1f}")
+        for count in counts
+    ]
+    cells_head = ("cells asked", "geometry and mesh", "an iteration of 16 conditions", "per cell", "peak memory")
+    return (
+        f"{size}\n\n{table(cells_head, rows)}\n\n"
+        f"{table(('conditions', 'flow, 75 000 cells', 'times one condition'), by_count)}"
+    )
+
+
+def compilation() -> str:
+    """Seconds of the first and of a later start."""
+    size, f = figures("compile")
+    return f"{size}: the first start ever takes {f['first_s']:.0f} s, a later one {f['later_s']:.1f} s."
+
+
+def stopping() -> str:
+    """The stopping rule against long runs."""
+    stored = json.loads((DATA / "stopping.json").read_text(encoding="utf-8"))
+    head = ("Mach", "alpha, deg", "verdict", "iterations", "decades", "long run: best decades", "force differs by")
+    rows = [
+        (
+            f"{r['mach']:g}",
+            f"{r['alpha_deg']:.0f}",
+            r["verdict"],
+            r["iterations"],
+            f"{r['decades']:.1f}",
+            f"{r['long_decades']:.1f}",
+            f"{r['force_percent']:.3f} %",
+        )
+        for r in stored["rows"]
+    ]
+    return f"HORUS-2B, {stored['cells']} cells.\n\n" + table(head, rows)
+
+
+BLOCKS: dict[str, Callable[[], str]] = {
+    "bench stages": stages,
+    "bench roofline": roofline,
+    "bench scaling": scaling,
+    "bench compilation": compilation,
+    "stopping rule": stopping,
+}
