@@ -51,6 +51,16 @@ def test_a_flight_point_without_modes_is_not_good():
     assert shortcomings(result | {"flight_points": []}) == ["no flight point"]
 
 
+def test_an_accuracy_that_was_not_met_is_not_good():
+    asked = {"target": 0.05, "reached": 0.062, "met": False}
+    result = example_result() | {"accuracy": asked}
+    assert shortcomings(result) == ["accuracy: 5 % asked, 6.2 % reached"]
+    assert "accuracy: 5 % NOT met: C_L, C_D and C_m within 6.2 % of the force" in printed(print_summary, result)
+    met = example_result() | {"accuracy": asked | {"reached": 0.049, "met": True}}
+    assert shortcomings(met) == []
+    assert "accuracy: 5 % met" in printed(print_summary, met)
+
+
 def test_flow_table():
     record = {
         "mach": 2.0,

@@ -139,17 +139,24 @@ def run_to_accuracy(
     """
     conditions = _turning(product(list(machs), list(alphas), list(betas)), rates, reference, body.points)
     viscous = _viscous(increments, ambient, len(conditions))
-    last: list[FlowCase] = []
+    last: FlowCase | None = None
+    number = 1
+
+    def say(phase: str, done: int, total: int, text: str) -> None:
+        (progress or silent)(f"mesh {number}: {phase}", done, total, text)
 
     def make(cell: float | None) -> Mesh:
-        return generate(body, at_wall_cell(mesh_settings, cell), progress)
+        return generate(body, at_wall_cell(mesh_settings, cell), say)
 
     def solved(mesh: Mesh) -> xr.Dataset:
-        last[:] = [_solved(mesh, conditions, reference, flow_settings, progress, *viscous)]
-        return last[0].coefficients
+        nonlocal last, number
+        last = None  # its state is as large as the next one's
+        last = _solved(mesh, conditions, reference, flow_settings, say, *viscous)
+        number += 1
+        return last.coefficients
 
     found = refine(make, solved, accuracy, tell)
-    (case,) = last
+    case = last
     rows = records(case.solution, found.coefficients)
     for row, reached in zip(rows, relative(found.coefficients), strict=True):
         met = bool(reached <= accuracy.target)

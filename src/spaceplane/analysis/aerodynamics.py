@@ -16,7 +16,7 @@ from spaceplane.aero.increments.settings import Air
 from spaceplane.aero.uncertainty.accuracy import Accuracy, Refined, at_wall_cell, cells_in_memory, refine
 from spaceplane.aero.uncertainty.companion import RATIO, Companion, coarser
 from spaceplane.aero.uncertainty.errors import of_coefficients, of_derivatives
-from spaceplane.aero.uncertainty.settings import MESH
+from spaceplane.aero.uncertainty.settings import MESH, TIGHTEST
 from spaceplane.analysis.settings import AnalyseSettings
 from spaceplane.dynamics.flightpoint import FlightPoint
 from spaceplane.flow.solve import solve
@@ -26,6 +26,10 @@ from spaceplane.mesh.settings import MeshSettings
 from spaceplane.progress import Progress
 from spaceplane.vehicle.build import build
 from spaceplane.vehicle.presets import Vehicle
+
+STRICTER = 0.95
+"""Share of what is asked that the mesh is chosen by: the choice knows the base conditions alone, the result their
+neighbours too, with which the estimate may come out a little larger."""
 
 
 @dataclass(frozen=True)
@@ -106,7 +110,11 @@ def _refine(
         solution = solve(mesh, conditions, settings.flow, say)
         return integrate_with(solution, vehicle.reference, settings.increments, air)
 
-    return refine(make, solved, Accuracy(target, settings.mesh.target_cells or cells_in_memory()))
+    def companion(cell: float) -> xr.Dataset:
+        return solved(generate(surface, coarser(settings.mesh, cell), say))
+
+    asked = Accuracy(max(STRICTER * target, TIGHTEST), settings.mesh.target_cells or cells_in_memory())
+    return refine(make, solved, asked, companion=companion)
 
 
 def _on_mesh(

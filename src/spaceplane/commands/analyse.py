@@ -75,7 +75,7 @@ def analyse(
     folder = out or Path("out") / re.sub(r"[^\w.-]+", "-", Path(vehicle).stem if "/" in vehicle else vehicle)
     subject = options.load_vehicle(vehicle, changes, allow_outside_limits)
     increments = options.increment_settings(friction, base, wall_temperature, emissivity, transition_reynolds)
-    asked = options.accuracy(accuracy, cell, uncertainty)
+    asked = options.accuracy(accuracy, cell, cells, uncertainty)
     stated = options.uncertainty(uncertainty)
     settings = _settings(machs, alpha, deflect, allow_outside_limits, cell, cells, precision)
     steps = replace(settings.steps, two_step_sizes=True) if two_steps else settings.steps

@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from spaceplane.vehicle.surface import Surface
 
 EULER = "euler"
+LIKELY_MESHES = 4  # on the way to an accuracy, for the progress bar
 EXAMPLE = (
     "Example: spaceplane flow cone.stl --mach 1.5,3 --alpha 0,5 --area 1 --length 2 --span 1 --moment-center 0,0,0 "
     "--cell 0.05 --json cone.json"
@@ -135,8 +136,8 @@ def flow(
         _check_body(body, roles)
     else:
         _check_mesh_file(mesh_file, {"BODY.stl": body, **mesh_options}, method)
-    asked = options.accuracy(accuracy, cell, uncertainty)
-    stated = options.uncertainty(uncertainty or "iteration")
+    asked = options.accuracy(accuracy, cell, cells, uncertainty)
+    stated = options.uncertainty("iteration" if uncertainty is None else uncertainty)
     chosen = {role: list_of_names(f"--{role}", text) for role, text in roles.items()}
     writable_file(json_file, "--json")
     writable_file(vtu, "--vtu", (".vtu",))
@@ -207,8 +208,7 @@ def _to_accuracy(
     def say(trial: Trial) -> None:
         typer.echo(trial_line(trial), err=True)
 
-    with progress_bar() as tell:
-        tell("mesh", 0, 1, "")
+    with progress_bar(LIKELY_MESHES) as tell:
         case, found = run_to_accuracy(*args, wanted, tell, **extra, tell=say)
     _write(case, args[0], None, vtu, vtp)
     code = _tell(case, json_file)

@@ -142,12 +142,13 @@ def uncertainty(text: str) -> str:
     return text
 
 
-def accuracy(text: str | None, cell: str | None, uncertainty: str | None) -> float | None:
+def accuracy(text: str | None, cell: str | None, cells: str | None, uncertainty: str | None) -> float | None:
     """The accuracy asked for, as a fraction.
 
     Args:
         text: of --accuracy.
         cell: of --cell, which does not go with it.
+        cells: of --cells, the most to use.
         uncertainty: of --uncertainty; "iteration" does not go with it.
 
     Raises:
@@ -162,8 +163,10 @@ def accuracy(text: str | None, cell: str | None, uncertainty: str | None) -> flo
         raise InputError(
             f"--accuracy: {text}, not allowed with --uncertainty iteration: it is the mesh that is refined"
         )
-    from spaceplane.aero.uncertainty.settings import LOOSEST, TIGHTEST
+    from spaceplane.aero.uncertainty.settings import FIRST_CELLS, LOOSEST, TIGHTEST
 
+    if cells is not None and count("--cells", cells, "cells") < FIRST_CELLS:
+        raise InputError(f"--cells: {cells}, at least {FIRST_CELLS} with --accuracy")
     if not TIGHTEST <= value <= LOOSEST:
         raise InputError(f"--accuracy: {text}, allowed {100 * TIGHTEST:g}% to {100 * LOOSEST:g}%")
     return value

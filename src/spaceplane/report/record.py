@@ -13,7 +13,7 @@ from spaceplane.aero.axes import FORCES_AND_MOMENTS
 from spaceplane.aero.conditions import ConditionPlan
 from spaceplane.aero.increments.add import INVISCID, WITH_SOURCES
 from spaceplane.aero.integrate import BY_SOURCE, COEFFICIENTS, PRESSURES, TOTAL, wetted_area
-from spaceplane.aero.uncertainty.accuracy import relative
+from spaceplane.aero.uncertainty.accuracy import cells_needed, relative
 from spaceplane.aero.uncertainty.errors import OF_MESH, OF_STEP, error_record
 from spaceplane.aero.uncertainty.grid import LEVEL, ORDER, SAFETY
 from spaceplane.aero.uncertainty.settings import ITERATION, MESH
@@ -194,11 +194,13 @@ def accuracy(analysis: Analysis) -> dict | None:
         return None
     rows = [p.base for p in analysis.plan.points]
     reached = float(relative(analysis.coefficients.isel(condition=rows)).max())
+    target = analysis.settings.accuracy
+    cells = analysis.body.solution.mesh.cells
     return {
-        "target": analysis.settings.accuracy,
+        "target": target,
         "reached": reached,
-        "met": reached <= analysis.settings.accuracy,
-        "needed_cells": refined.needed,
+        "met": reached <= target,
+        "needed_cells": cells_needed(cells, reached, target) if reached > target else None,
         "meshes": [asdict(trial) for trial in refined.trials],
     }
 

@@ -203,7 +203,7 @@ def print_flow(records: Iterable[dict], console: Console | None = None) -> None:
         table.add_row(*where, *values, Text(r.get("verdict") or "", style=style))
         errors = r.get("coefficient_errors") or {}
         if errors:
-            table.add_row("", "", "", *(f"± {fixed(errors.get(name), 5)}" for name in names), "", style="dim")
+            table.add_row("", "", "", *(f"±{fixed(errors.get(name), 5)}" for name in names), "", style="dim")
     console.print(table)
 
 

@@ -14,14 +14,13 @@ from spaceplane.aero.integrate import TOTAL
 from spaceplane.aero.uncertainty.companion import RATIO
 from spaceplane.aero.uncertainty.errors import of_coefficients
 from spaceplane.aero.uncertainty.grid import ORDER
-from spaceplane.aero.uncertainty.settings import LOOSEST, TIGHTEST
+from spaceplane.aero.uncertainty.settings import FIRST_CELLS, LOOSEST, TIGHTEST
 from spaceplane.errors import InputError
 from spaceplane.mesh.mesh import Mesh
 from spaceplane.mesh.settings import MeshSettings
 from spaceplane.plain import degrees
 
 JUDGED = ("CL", "CD", "Cm")
-FIRST_CELLS = 12_000
 MOST_CELLS = 2_000_000
 BYTES_PER_CELL = 12_000
 """Memory that the solver takes for each cell with sixteen conditions at once, fp32."""
@@ -120,41 +119,46 @@ def refine(
     solve: Callable[[Mesh], xr.Dataset],
     accuracy: Accuracy,
     tell: Callable[[Trial], None] | None = None,
+    companion: Callable[[float], xr.Dataset] | None = None,
 ) -> Refined:
     """Solve on finer and finer meshes until the estimated uncertainty is as small as asked or the next is too large.
 
-    Each mesh is compared with the earlier one whose cells are nearest to twice as large. The next wall cell is what
-    the assumed order asks for, half the present one at least.
+    Each mesh is compared with the earlier one whose cells are nearest to twice as large, or with a companion of its
+    own. The next wall cell is what the assumed order asks for, half the present one at least.
 
     Args:
         make: mesh of a wall cell, m; a first one of about FIRST_CELLS cells for None.
         solve: coefficients of every condition on a mesh, as `integrate` gives.
         accuracy: what is asked, and the most cells.
         tell: called with each mesh once it is solved.
+        companion: coefficients on the companion of a mesh with this wall cell, m, RATIO times as coarse; None compares
+            with earlier meshes.
+
+    Raises:
+        InputError: the cells allowed are too few for two meshes of this body.
     """
     mesh = make(None)
     runs = [(_wall_cell(mesh), mesh.cells, solve(mesh))]
     trials = [Trial(mesh.cells, runs[0][0], None, "")]
-    cell = runs[0][0] / RATIO
+    if tell:
+        tell(trials[0])
+    finer = _within(make, runs, runs[0][0] / RATIO, accuracy.max_cells)
+    if finer is None:
+        raise InputError(f"max_cells: {accuracy.max_cells}, too few for two meshes of this body to compare")
     while True:
+        runs.append((_wall_cell(finer), finer.cells, solve(finer)))
+        compared = _compared(runs, companion)
+        share = _relative(compared[0])
+        reached = float(share.max()) if np.isfinite(share).all() else math.inf
+        trials.append(Trial(finer.cells, runs[-1][0], reached, _where(compared[0], share)))
         if tell:
             tell(trials[-1])
-        mesh = _within(make, runs, cell, accuracy.max_cells)
-        if mesh is None and len(runs) == 1:
-            raise InputError(f"max_cells: {accuracy.max_cells}, too few for two meshes of this body to compare")
-        if mesh is None:
-            return _stopped(runs, trials, accuracy, met=False)
-        runs.append((_wall_cell(mesh), mesh.cells, solve(mesh)))
-        found, _, _ = _compared(runs)
-        share = _relative(found)
-        reached = float(share.max()) if np.isfinite(share).all() else math.inf
-        trials.append(Trial(mesh.cells, runs[-1][0], reached, _where(found, share)))
-        if reached <= accuracy.target:
-            if tell:
-                tell(trials[-1])
-            return _stopped(runs, trials, accuracy, met=True)
-        wish = (MARGIN * accuracy.target / reached) ** (1.0 / ORDER)
+        met = reached <= accuracy.target
+        wish = (MARGIN * accuracy.target / reached) ** (1.0 / ORDER) if reached else 1.0
         cell = runs[-1][0] * min(max(wish, 1.0 / RATIO), 1.0 / SMALLEST_STEP)
+        finer = None if met else _within(make, runs, cell, accuracy.max_cells)
+        if finer is None:
+            return _stopped(runs, trials, accuracy, compared, met)
 
 
 Run = tuple[float, int, xr.Dataset]
@@ -184,21 +188,39 @@ def _power(runs: Sequence[Run]) -> float:
     return min(max(math.log(many / few) / math.log(large / small), 1.0), 3.0)
 
 
-def _compared(runs: Sequence[Run]) -> tuple[xr.Dataset, xr.Dataset, float]:
-    """Coefficients of the last run with errors, those of the run that it is compared with, and the cells' ratio."""
+Compared = tuple[xr.Dataset, xr.Dataset, float]
+"""Coefficients of a run with errors, those of the run that it is compared with, and the cells' ratio."""
+
+
+def _compared(runs: Sequence[Run], companion: Callable[[float], xr.Dataset] | None) -> Compared:
     cell, _, coefficients = runs[-1]
+    if companion is not None:
+        coarse = companion(cell)
+        return of_coefficients(coefficients, coarse, RATIO), coarse, RATIO
     other = min(runs[:-1], key=lambda run: abs(math.log(run[0] / cell / RATIO)))
     ratio = other[0] / cell
     return of_coefficients(coefficients, other[2], ratio), other[2], ratio
 
 
-def _stopped(runs: Sequence[Run], trials: Sequence[Trial], accuracy: Accuracy, met: bool) -> Refined:
-    coefficients, companion, ratio = _compared(runs)
+def _stopped(
+    runs: Sequence[Run], trials: Sequence[Trial], accuracy: Accuracy, compared: Compared, met: bool
+) -> Refined:
     needed = None
     if not met and math.isfinite(trials[-1].reached):
-        finer = (trials[-1].reached / accuracy.target) ** (1.0 / ORDER)
-        needed = round(trials[-1].cells * finer ** _power(runs))
-    return Refined(tuple(trials), met, coefficients, companion, ratio, needed)
+        needed = cells_needed(trials[-1].cells, trials[-1].reached, accuracy.target, _power(runs))
+    return Refined(tuple(trials), met, *compared, needed)
+
+
+def cells_needed(cells: int, reached: float, target: float, power: float = 2.0) -> int:
+    """About the cells of the mesh on which the target would be reached.
+
+    Args:
+        cells: of a mesh.
+        reached: uncertainty on it, as a fraction.
+        target: uncertainty asked for, as a fraction.
+        power: with which cells grow with the inverse of the wall cell; by default as surfaces do.
+    """
+    return round(cells * (reached / target) ** (power / ORDER))
 
 
 def _relative(coefficients: xr.Dataset) -> np.ndarray:

@@ -10,8 +10,16 @@ from spaceplane.aero.uncertainty.grid import half_width
 from spaceplane.aero.uncertainty.settings import ITERATION, MESH
 from spaceplane.plain import finite
 
-ACROSS, ALONG = ("CL", "CN", "CY"), ("CD", "CA", "CA_forebody", "CA_base")
-"""Forces across and along the body: a base or a bow shock does to one what it does not to the other."""
+SCALES = {
+    "lift": ("CL", "CN"),
+    "drag": ("CD", "CA", "CA_forebody", "CA_base"),
+    "side": ("CY",),
+    "pitch": ("Cm",),
+    "lateral": ("Cl", "Cn"),
+}
+"""Coefficients whose errors are of one size: a base or a bow shock does to one what it does not to another."""
+ARMS = {"lift": "pitch", "side": "lateral"}
+"""Forces are off by no less than the moments that they make: moments are on reference lengths, and arms no longer."""
 WITH_ERROR = (*WITH_SPREAD, "CA_forebody", "CA_base")
 """Coefficients that have an error; the solver's final window tells the two shares of CA no more than of CA itself."""
 OF_MESH = "_mesh_error"
@@ -40,7 +48,8 @@ def of_coefficients(data: xr.Dataset, companion: xr.Dataset | None, ratio: float
     changes = {}
     if companion is not None:
         groups = [_scale(name) for name in names]
-        mesh = half_width(*(_totals(d, names) for d in (data, companion)), data.mach.values, groups, ratio)
+        values = (_totals(d, names) for d in (data, companion))
+        mesh = half_width(*values, data.mach.values, groups, ratio, _arms(groups))
         for name, error in zip(names, mesh, strict=True):
             head = data[name].attrs | {"long_name": f"uncertainty of {name} by the mesh, 95 %", "positive": "always"}
             changes[f"{name}{OF_MESH}"] = ("condition", error, head)
@@ -72,7 +81,7 @@ def of_derivatives(data: xr.Dataset, companion: xr.Dataset | None, mach: np.ndar
         return data
     names = [str(name) for name in data.data_vars if f"{name}_status" in data]
     groups = [_scale(name) for name in names]
-    mesh = half_width(_totals(data, names), _totals(companion, names), mach, groups, ratio)
+    mesh = half_width(_totals(data, names), _totals(companion, names), mach, groups, ratio, _arms(groups))
     changes = {}
     for name, error in zip(names, mesh, strict=True):
         step = data[f"{name}_error"]
@@ -116,7 +125,12 @@ def _totals(data: xr.Dataset, names: list[str]) -> np.ndarray:
 
 
 def _scale(name: str) -> str:
-    """What has errors of one size: forces across, forces along or moments, and their derivatives by one quantity."""
+    """What a coefficient, or a derivative by one quantity, shares the size of its errors with."""
     coefficient, _, quantity = (name, "", "") if name in WITH_ERROR else name.partition("_")
-    kind = "across" if coefficient in ACROSS else "along" if coefficient in ALONG else "moment"
-    return f"{kind} {quantity}"
+    return next(scale for scale, names in SCALES.items() if coefficient in names) + f" {quantity}"
+
+
+def _arms(groups: list[str]) -> dict[str, str]:
+    """Group of forces to that of the moments that they make, as of ARMS."""
+    scales = {group: group.partition(" ") for group in groups}
+    return {group: f"{ARMS[kind]} {quantity}" for group, (kind, _, quantity) in scales.items() if kind in ARMS}
