@@ -106,8 +106,8 @@ def _points_table(points: list[dict]) -> Table:
     table.add_row("altitude, km", *(fixed(_scaled(p.get("altitude_m"), 1e-3), 1) for p in points))
     table.add_row("alpha, deg", *(fixed(p.get("alpha_deg"), 1) for p in points))
     for name in COEFFICIENT_ROWS:
-        values = [(p.get("coefficients") or {}).get(name) for p in points]
-        table.add_row("L/D" if name == "L_over_D" else name, *(fixed(v, 4) for v in values))
+        cells = [_coefficient_cell(p, name) for p in points]
+        table.add_row("L/D" if name == "L_over_D" else name, *cells)
     table.add_section()
     table.add_row(Text("per rad, per Mach", style="dim"))
     for name in DERIVATIVE_ROWS:
@@ -115,6 +115,11 @@ def _points_table(points: list[dict]) -> Table:
         if any(records):
             table.add_row(name, *(_derivative_cell(name, r) for r in records))
     return table
+
+
+def _coefficient_cell(point: dict, name: str) -> str:
+    value, error = ((point.get(key) or {}).get(name) for key in ("coefficients", "coefficient_errors"))
+    return str(measured(value, error)) if is_number(error) and error > 0 else fixed(value, 4)
 
 
 def _derivative_cell(name: str, record: dict) -> Text:
