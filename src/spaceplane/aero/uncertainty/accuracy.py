@@ -75,16 +75,12 @@ class Refined:
         trials: every mesh, coarse to fine.
         met: whether the last one is as certain as asked.
         coefficients: on the last mesh, with their errors.
-        companion: coefficients on the mesh that it was compared with.
-        ratio: cell of that mesh over that of the last one.
         needed: cells that would be needed, by the assumed order; None when met.
     """
 
     trials: tuple[Trial, ...]
     met: bool
     coefficients: xr.Dataset
-    companion: xr.Dataset
-    ratio: float
     needed: int | None
 
     @property
@@ -147,10 +143,10 @@ def refine(
         raise InputError(f"max_cells: {accuracy.max_cells}, too few for two meshes of this body to compare")
     while True:
         runs.append((_wall_cell(finer), finer.cells, solve(finer)))
-        compared = _compared(runs, companion)
-        share = _relative(compared[0])
+        found = _compared(runs, companion)
+        share = _relative(found)
         reached = float(share.max()) if np.isfinite(share).all() else math.inf
-        trials.append(Trial(finer.cells, runs[-1][0], reached, _where(compared[0], share)))
+        trials.append(Trial(finer.cells, runs[-1][0], reached, _where(found, share)))
         if tell:
             tell(trials[-1])
         met = reached <= accuracy.target
@@ -158,7 +154,7 @@ def refine(
         cell = runs[-1][0] * min(max(wish, 1.0 / RATIO), 1.0 / SMALLEST_STEP)
         finer = None if met else _within(make, runs, cell, accuracy.max_cells)
         if finer is None:
-            return _stopped(runs, trials, accuracy, compared, met)
+            return _stopped(runs, trials, accuracy, found, met)
 
 
 Run = tuple[float, int, xr.Dataset]
@@ -188,27 +184,20 @@ def _power(runs: Sequence[Run]) -> float:
     return min(max(math.log(many / few) / math.log(large / small), 1.0), 3.0)
 
 
-Compared = tuple[xr.Dataset, xr.Dataset, float]
-"""Coefficients of a run with errors, those of the run that it is compared with, and the cells' ratio."""
-
-
-def _compared(runs: Sequence[Run], companion: Callable[[float], xr.Dataset] | None) -> Compared:
+def _compared(runs: Sequence[Run], companion: Callable[[float], xr.Dataset] | None) -> xr.Dataset:
+    """Coefficients of the last run with errors, from its companion or from the earlier run nearest to one."""
     cell, _, coefficients = runs[-1]
     if companion is not None:
-        coarse = companion(cell)
-        return of_coefficients(coefficients, coarse, RATIO), coarse, RATIO
+        return of_coefficients(coefficients, companion(cell), RATIO)
     other = min(runs[:-1], key=lambda run: abs(math.log(run[0] / cell / RATIO)))
-    ratio = other[0] / cell
-    return of_coefficients(coefficients, other[2], ratio), other[2], ratio
+    return of_coefficients(coefficients, other[2], other[0] / cell)
 
 
-def _stopped(
-    runs: Sequence[Run], trials: Sequence[Trial], accuracy: Accuracy, compared: Compared, met: bool
-) -> Refined:
+def _stopped(runs: Sequence[Run], trials: Sequence[Trial], accuracy: Accuracy, found: xr.Dataset, met: bool) -> Refined:
     needed = None
     if not met and math.isfinite(trials[-1].reached):
         needed = cells_needed(trials[-1].cells, trials[-1].reached, accuracy.target, _power(runs))
-    return Refined(tuple(trials), met, *compared, needed)
+    return Refined(tuple(trials), met, found, needed)
 
 
 def cells_needed(cells: int, reached: float, target: float, power: float = 2.0) -> int:
