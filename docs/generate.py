@@ -24,12 +24,13 @@ import blocks  # noqa: E402  (beside this script)
 import fast_tier_blocks  # noqa: E402
 import performance_blocks  # noqa: E402
 import study_blocks  # noqa: E402
+import uncertainty_blocks  # noqa: E402
 
 PAGES = [*sorted(DOCS.rglob("*.md")), DOCS.parent / "README.md"]
 PATTERN = re.compile(r"(<!-- generated: ([a-z0-9 -]+) -->\n).*?(<!-- end generated -->)", re.DOTALL)
-BLOCKS: dict[str, Callable[[], str]] = (
-    blocks.BLOCKS | study_blocks.BLOCKS | fast_tier_blocks.BLOCKS | performance_blocks.BLOCKS
-)
+BLOCKS: dict[str, Callable[[], str]] = {}
+for _module in (blocks, study_blocks, fast_tier_blocks, performance_blocks, uncertainty_blocks):
+    BLOCKS |= _module.BLOCKS
 
 
 MISSING: dict[str, Path] = {}

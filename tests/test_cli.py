@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 from spaceplane import __version__, cli
-from spaceplane.commands.arguments import spread_assignments
+from spaceplane.commands.arguments import fraction, spread_assignments
 from spaceplane.errors import InputError
 
 COMMANDS = ("analyse", "geometry", "flow", "modes", "compare", "report", "validate", "export", "study sensitivity")
@@ -298,13 +298,37 @@ def test_unwritable_flow_output(capfd, tmp_path, option, name):
         ("--alpha", "abc"), ("--alpha", ""), ("--alpha", "95"), ("--alpha", "5,5"), ("--beta", "x"), ("--area", "0"),
         ("--area", "-1"), ("--area", "big"), ("--length", "0"), ("--span", "inf"), ("--moment-center", "0,0"),
         ("--moment-center", "a,b,c"), ("--rates", "0,0"), ("--altitude", "up"), ("--cell", "0"), ("--cells", "-5"),
-        ("--precision", "half"), ("--vtu", "field.txt"),
+        ("--precision", "half"), ("--vtu", "field.txt"), ("--uncertainty", "grid"), ("--uncertainty", ""),
+        ("--accuracy", ""), ("--accuracy", "fine"), ("--accuracy", "%"), ("--accuracy", "0"), ("--accuracy", "-1%"),
+        ("--accuracy", "0.001%"), ("--accuracy", "90%"), ("--accuracy", "1"), ("--accuracy", "nan"),
     ],
 )  # fmt: skip
 def test_bad_flow_options(capfd, tmp_path, option, text):
     body = tetrahedron(tmp_path / "t.stl")
     options = {"--mach": "2", "--alpha": "0", **dict(zip(FLOW[::2], FLOW[1::2], strict=True))} | {option: text}
     refused(capfd, "flow", body, *(x for pair in options.items() for x in pair), naming=option)
+
+
+@pytest.mark.parametrize("text", ["1%", "0.01", " 1 % ", "1e0%"])
+def test_a_share_may_be_per_cent(text):
+    assert fraction("--accuracy", text) == pytest.approx(0.01)
+
+
+@pytest.mark.parametrize(
+    ("options", "naming"),
+    [
+        (("--accuracy", "1%", "--cell", "0.1"), "not allowed with --cell"),
+        (("--accuracy", "1%", "--uncertainty", "iteration"), "not allowed with --uncertainty iteration"),
+        (("--accuracy", "1%", "--cells", "5k"), "--cells: 5k, at least 12000"),
+    ],
+)
+@pytest.mark.parametrize("command", ["flow", "analyse"])
+def test_what_an_accuracy_does_not_go_with(capfd, tmp_path, command, options, naming):
+    if command == "flow":
+        start = ["flow", tetrahedron(tmp_path / "t.stl"), "--mach", 2, *FLOW]
+    else:
+        start = ["analyse", "horus-2b", "--out", tmp_path / "o"]
+    refused(capfd, *start, *options, naming=naming)
 
 
 def test_rates_and_altitudes_that_no_flight_has(capfd, tmp_path):
@@ -576,6 +600,8 @@ def test_local_inclination_from_the_command_line(capfd, tmp_path):
         (("--method", "tangent", "--vtu", "a.vtu"), "--vtu"),
         (("--method", "tangent", "--vtp", "a.vtp"), "--vtp"),
         (("--method", "tangent", "--precision", "fp64"), "--precision"),
+        (("--method", "tangent", "--accuracy", "1%"), "--accuracy: 1%, allowed with --method euler only"),
+        (("--method", "tangent", "--uncertainty", "mesh"), "--uncertainty: mesh, allowed with --method euler only"),
     ],
 )
 def test_what_local_inclination_refuses(capfd, tmp_path, monkeypatch, options, naming):
@@ -629,6 +655,8 @@ def test_flow_on_a_mesh(capfd, tmp_path, ending):
         (["--cell", "0.1"], "--cell: 0.1, not allowed with --mesh"),
         (["--cells", "1000"], "--cells: 1000, not allowed with --mesh"),
         (["--domain", "0,0,0,1,1,1"], "--domain"),
+        (["--accuracy", "1%"], "--accuracy: 1%, not allowed with --mesh"),
+        (["--uncertainty", "mesh"], "--uncertainty: mesh, not allowed with --mesh"),
         (["body.stl"], "BODY.stl: body.stl, not allowed with --mesh"),
         (["--alpha", "5"], "goes through 80 of 160 faces of symmetry"),
     ],

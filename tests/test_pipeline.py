@@ -13,6 +13,7 @@ from spaceplane.aero import bodies
 from spaceplane.aero.conditions import DerivativeSteps
 from spaceplane.aero.database import AeroDatabase
 from spaceplane.aero.increments.settings import VISCOUS, IncrementSettings
+from spaceplane.analysis import aerodynamics
 from spaceplane.errors import InputError
 from spaceplane.flow.freestream import direction
 from spaceplane.flow.solution import ConvergenceRecord, Solution
@@ -89,8 +90,15 @@ def test_result_holds_the_whole_chain(written):
             total = point["coefficients"][name]
             assert sum(part[name] for part in parts.values()) == pytest.approx(total, abs=1e-12)
         assert point["coefficients"]["L_over_D"] == pytest.approx(total_ratio(point))
-        assert set(point["coefficient_errors"]) == {"CL", "CD", "CY", "Cl", "Cm", "Cn", "CA", "CN"}
-        assert all(error == 0.0 for error in point["coefficient_errors"].values())  # nothing wanders in this flow
+        whole = {"CL", "CD", "CY", "Cl", "Cm", "Cn", "CA", "CN", "CA_forebody", "CA_base"}
+        assert set(point["coefficient_errors"]) == {*whole, "L_over_D"}
+        sources = point["coefficient_errors_by_source"]
+        assert all(error == 0.0 for error in sources["iteration"].values())  # nothing wanders in this flow
+        assert {name: point["coefficient_errors"][name] for name in whole} == pytest.approx(sources["mesh"])
+        for name in ("CL", "CD", "Cm"):
+            assert 0.0 < sources["mesh"][name] < 0.4 * abs(point["coefficients"]["CN"])
+        for name in ("CY", "Cl", "Cn"):
+            assert sources["mesh"][name] < 1e-6  # zero by symmetry on both meshes
         labels = [row["label"] for row in point["convergence"]]
         assert labels[:6] == ["base", "alpha+", "alpha-", "mach+", "mach-", "beta"]
         assert labels[6:10] == ["p", "q+", "q-", "r"]
@@ -119,6 +127,94 @@ def test_derivatives_are_those_of_the_impact_method(written, analysis):
     exact = (lift(alpha + step) - lift(alpha - step)) / (2 * step)
     found = float(analysis.derivatives.CL_alpha.sel(part="total")[1])
     assert found == pytest.approx(exact, rel=0.05)  # wall faces of 0.6 m average the normals
+
+
+def test_derivatives_state_what_the_mesh_and_the_step_do_to_them(written, analysis):
+    paths, _ = written
+    result = json.loads(paths["result.json"].read_text(encoding="utf-8"))
+    assert result["uncertainty"]["sources"] == ["iteration", "mesh"]
+    assert result["uncertainty"]["wall_cell_m"] == pytest.approx(2.0 * result["mesh"]["wall_cell_m"])
+    assert result["uncertainty"]["cells"] < 0.6 * result["mesh"]["cells"]
+    assert any("companion" in phase for phase in result["solver"]["seconds_by_phase"])
+    for point in result["flight_points"]:
+        for name in ("CL_alpha", "Cm_alpha", "CY_beta", "Cl_p", "Cm_q", "CL_elevon_left"):
+            found = point["derivatives"][name]
+            step, mesh = found["error_by_source"]["difference"], found["error_by_source"]["mesh"]
+            assert mesh > 0.0 and found["error"] == pytest.approx(math.hypot(step, mesh)), name
+    base, moved = analysis.coefficients, analysis.control_runs[0].coefficients
+    for data in (base, moved):
+        error = data.CL_mesh_error
+        assert error.dims == ("condition",) and error.attrs["units"] == "1" and (error > 0.0).all()
+    page = paths["report.html"].read_text(encoding="utf-8")
+    assert "coarser companion mesh" in page
+
+
+def test_without_the_companion_mesh_errors_are_those_of_iteration_and_step(monkeypatch, analysis):
+    monkeypatch.setattr(bodies, "solve", newtonian())
+    found = analyse(horus_2b(), replace(SETTINGS, mach=(2.5,), controls=False, uncertainty="iteration"))
+    assert found.aerodynamics.companion is None and not any("companion" in phase for phase in found.seconds())
+    result = record.result(found)
+    assert result["uncertainty"] == {"sources": ["iteration"]}
+    (point,) = result["flight_points"]
+    assert set(point["coefficient_errors_by_source"]) == {"iteration"}
+    assert set(point["coefficient_errors"].values()) == {0.0}
+    both = analysis.derivatives.isel(point=1)
+    for name in ("CL_alpha", "Cn_beta"):
+        assert point["derivatives"][name]["error"] == pytest.approx(float(both[f"{name}_step_error"]))
+        assert set(point["derivatives"][name]["error_by_source"]) == {"difference"}
+    with pytest.raises(InputError, match="uncertainty = 'mash': allowed are mesh, iteration"):
+        replace(SETTINGS, uncertainty="mash")
+
+
+def test_a_failed_companion_leaves_the_error_open_and_says_so(monkeypatch):
+    """The fine mesh is solved first: what fails after it is the companion."""
+    calls = []
+
+    def solve(*args):
+        calls.append(args)
+        return newtonian(failing={0} if len(calls) == 2 else ())(*args)
+
+    monkeypatch.setattr(bodies, "solve", solve)
+    found = analyse(horus_2b(), replace(SETTINGS, mach=(2.5,), controls=False))
+    (point,) = record.result(found)["flight_points"]
+    assert point["coefficients"]["CL"] is not None and point["coefficient_errors"]["CL"] is None
+    assert point["modes"] and all(row["verdict"] == "converged" for row in point["convergence"])
+    assert any(line.startswith("companion mesh: 1 of 10 conditions did not converge") for line in found.warnings)
+
+
+def test_an_accuracy_chooses_the_mesh_and_is_judged_on_it(monkeypatch):
+    monkeypatch.setattr(bodies, "solve", newtonian())
+    monkeypatch.setattr(aerodynamics, "solve", newtonian())
+    mesh = MeshSettings(far_field=1.0, target_cells=45_000)
+    settings = AnalyseSettings(mach=(2.5,), controls=False, mesh=mesh, increments=INVISCID, accuracy=0.3)
+    found = analyse(horus_2b(), settings)
+    result = record.result(found)
+    asked = result["accuracy"]
+    assert asked["met"] and asked["reached"] <= 0.3 and asked["needed_cells"] is None
+    assert [one["reached"] is None for one in asked["meshes"]] == [True] + [False] * (len(asked["meshes"]) - 1)
+    assert result["mesh"]["wall_cell_m"] == pytest.approx(asked["meshes"][-1]["wall_cell"])
+    assert result["mesh"]["cells"] == asked["meshes"][-1]["cells"] <= 45_000
+    assert result["settings"]["accuracy"] == 0.3 and result["settings"]["mesh"]["target_cells"] == 45_000
+    (point,) = result["flight_points"]
+    force = math.hypot(point["coefficients"]["CL"], point["coefficients"]["CD"])
+    worst = max(point["coefficient_errors"][name] for name in ("CL", "CD", "Cm")) / force
+    assert worst == pytest.approx(asked["reached"])
+    missed = record.result(analyse(horus_2b(), replace(settings, accuracy=0.0005)))["accuracy"]
+    assert not missed["met"] and missed["needed_cells"] > 45_000
+
+
+@pytest.mark.parametrize(
+    ("change", "naming"),
+    [
+        ({"accuracy": 1.0}, "accuracy = 1.0: allowed are 0.0005 to 0.5"),
+        ({"accuracy": "1%"}, "accuracy"),
+        ({"accuracy": 0.01, "uncertainty": "iteration"}, "accuracy = 0.01: needs uncertainty = 'mesh'"),
+        ({"accuracy": 0.01, "mesh": {"wall_cell": 0.2}}, "mesh.wall_cell = 0.2: accuracy chooses it"),
+    ],
+)
+def test_accuracies_that_no_analysis_has(change, naming):
+    with pytest.raises(InputError, match=naming):
+        AnalyseSettings.from_mapping(change)
 
 
 def test_signs_of_control_derivatives_and_mirror_images(analysis):
@@ -189,7 +285,7 @@ def test_two_step_sizes_halve_every_step_and_shrink_the_truncation_error(monkeyp
     one, two = (data.derivatives.sel(part="total").isel(point=-1) for data in (analysis, found))
     for name in ("CL_alpha", "CD_alpha", "CD_M", "CY_beta"):
         assert float(two[name]) == pytest.approx(float(one[name]), rel=0.05)
-    assert float(two.CD_alpha_error) < 0.1 * float(one.CD_alpha_error)
+    assert float(two.CD_alpha_step_error) < 0.1 * float(one.CD_alpha_step_error)
 
 
 def test_a_failed_condition_poisons_what_rests_on_it_and_says_so(monkeypatch, tmp_path):

@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import xarray as xr
 
 from spaceplane import __version__
-from spaceplane.aero.bodies import ControlRun, control_runs, is_symmetric, slopes_of, solve_vehicle
+from spaceplane.aero.bodies import ControlRun, is_symmetric
 from spaceplane.aero.conditions import ConditionPlan
 from spaceplane.aero.conditions import plan as plan_conditions
 from spaceplane.aero.database import SolvedCases, assemble
-from spaceplane.aero.derivatives import differentiate
-from spaceplane.aero.increments.add import integrate_with
-from spaceplane.aero.increments.settings import Air
+from spaceplane.analysis.aerodynamics import solve_aerodynamics
 from spaceplane.analysis.flight import fly
 from spaceplane.analysis.found import Analysis, remarks
 from spaceplane.analysis.settings import AnalyseSettings
@@ -45,53 +42,20 @@ def analyse(vehicle: Vehicle, settings: AnalyseSettings | None = None, progress:
     points = settings.flight_points()
     symmetric = is_symmetric(settings.deflections)
     plan = plan_conditions(list(points), settings.steps, symmetric, reference=vehicle.reference)
-    body = solve_vehicle(vehicle, settings.deflections, plan.conditions, settings.mesh, settings.flow, say, "base")
-    say("coefficients", 0, 1, "")
-    air = Air.of([points[i].ambient for i in plan.point])
-    coefficients = integrate_with(body.solution, vehicle.reference, settings.increments, air)
-    base = coefficients.isel(condition=[p.base for p in plan.points])
-    derivatives = differentiate(coefficients, plan)
-    runs: tuple[ControlRun, ...] = ()
-    if settings.controls:
-        wall_cell = float(body.solution.mesh.record["wall_cell_m"])
-        runs = _control_runs(vehicle, settings, plan, wall_cell, Air.of([p.ambient for p in points]), say)
-        slopes = slopes_of(base, runs, symmetric)
-        derivatives = xr.merge([derivatives, slopes], join="exact")
+    aero = solve_aerodynamics(vehicle, settings, plan, points, say)
+    base = aero.coefficients.isel(condition=[p.base for p in plan.points])
     say("flight dynamics", 0, 1, "")
-    length = float(np.ptp(body.surface.bounds[:, 0]))
-    found = tuple(fly(p, i, vehicle, settings, base, derivatives, length) for i, p in enumerate(points))
+    length = float(np.ptp(aero.body.surface.bounds[:, 0]))
+    found = tuple(fly(p, i, vehicle, settings, base, aero.derivatives, length) for i, p in enumerate(points))
+    cases = _cases(settings, plan, aero.coefficients, aero.control_runs)
     return Analysis(
         vehicle=vehicle,
         settings=settings,
-        body=body,
         plan=plan,
-        coefficients=coefficients,
-        control_runs=runs,
-        derivatives=derivatives,
+        aerodynamics=aero,
         points=found,
-        database=assemble(
-            _cases(settings, plan, coefficients, runs), derivatives, [p.name for p in points], __version__
-        ),
-        warnings=remarks(vehicle, body, plan, runs, found, derivatives),
-    )
-
-
-def _control_runs(
-    vehicle: Vehicle, settings: AnalyseSettings, plan: ConditionPlan, wall_cell: float, air: Air, say: Progress
-) -> tuple[ControlRun, ...]:
-    """The base conditions on bodies with one surface moved, on the wall cell, m, of the base mesh and in its air."""
-    rows = np.array([p.base for p in plan.points])
-    return control_runs(
-        vehicle,
-        settings.deflections,
-        settings.control_step,
-        plan.conditions.take(rows),
-        replace(settings.mesh, wall_cell=wall_cell, target_cells=None),
-        settings.flow,
-        settings.steps.two_step_sizes,
-        say,
-        settings.increments,
-        air,
+        database=assemble(cases, aero.derivatives, [p.name for p in points], __version__),
+        warnings=remarks(vehicle, plan, aero, found),
     )
 
 

@@ -100,6 +100,18 @@ def test_units_and_axes_stand_beside_the_tables(html):
         assert phrase in text
 
 
+def test_what_the_uncertainty_holds_is_said_in_a_sentence(html, tmp_path):
+    assert "the error of the mesh is in neither" in words(html)
+    found = {"sources": ["iteration", "mesh"], "level": 0.95, "ratio": 2.0, "cells": 24268}
+    asked = {"target": 0.05, "reached": 0.062, "met": False}
+    text = words(write_report(write_example(tmp_path, uncertainty=found, accuracy=asked)).read_text(encoding="utf-8"))
+    assert "in neither" not in text
+    assert "exact inviscid value in 95 % of all cases" in text
+    assert "a coarser companion mesh (24 268 cells, at the wall 2.0 times as large)" in text.replace("\u202f", " ")
+    assert "the same quotient on the companion mesh" in text
+    assert "accuracy 6.2 %, 5 % asked" in text
+
+
 def test_unconverged_conditions_are_warned_about_at_the_top(tmp_path):
     result = example_result()
     result["flight_points"][1]["convergence"][0] = convergence("base", 1.5, 12.0, 0.0, "oscillating")

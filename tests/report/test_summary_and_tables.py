@@ -23,6 +23,7 @@ def printed(function, *arguments, width: int = 120) -> str:
 def test_summary_shows_the_findings(tmp_path):
     text = printed(print_summary, example_result(), tmp_path / "report.html")
     assert "1.405 ± 0.018" in text
+    assert "0.3600 ± 0.0004" in text  # C_L
     assert "aperiodic pitch divergence" in text
     assert "below 3" in text
     assert "all 18 flow conditions converged" in text
@@ -51,6 +52,16 @@ def test_a_flight_point_without_modes_is_not_good():
     assert shortcomings(result | {"flight_points": []}) == ["no flight point"]
 
 
+def test_an_accuracy_that_was_not_met_is_not_good():
+    asked = {"target": 0.05, "reached": 0.062, "met": False}
+    result = example_result() | {"accuracy": asked}
+    assert shortcomings(result) == ["accuracy: 5 % asked, 6.2 % reached"]
+    assert "accuracy: 5 % NOT met: C_L, C_D and C_m within 6.2 % of the force" in printed(print_summary, result)
+    met = example_result() | {"accuracy": asked | {"reached": 0.049, "met": True}}
+    assert shortcomings(met) == []
+    assert "accuracy: 5 % met" in printed(print_summary, met)
+
+
 def test_flow_table():
     record = {
         "mach": 2.0,
@@ -75,6 +86,8 @@ def test_csv_holds_every_number(tmp_path):
     assert row["unit"] == "1/rad"
     totals = [r for r in paths["coefficients.csv"] if r["part"] == "total"]
     assert [float(r["CL"]) for r in totals] == [p["coefficients"]["CL"] for p in result["flight_points"]]
+    assert [float(r["CL_error"]) for r in totals] == [p["coefficient_errors"]["CL"] for p in result["flight_points"]]
+    assert next(r for r in paths["coefficients.csv"] if r["part"] == "nose")["CL_error"] == ""
     assert len(paths["modes.csv"]) == 18
     missing = next(r for r in paths["verdicts.csv"] if r["mode"] == "short period")
     assert missing["level"] == "" and missing["value"] == ""
@@ -91,6 +104,8 @@ def test_netcdf_gives_the_same_numbers(tmp_path):
         assert float(data.Cm_alpha_error.sel(flight_point="Mach 1.5", part="total")) == record["error"]
         assert float(data.Cm_alpha.sel(flight_point="Mach 1.5", part="nose")) == record["by_part"]["nose"]
         assert data.Cm_alpha.attrs["units"] == "1/rad"
+        error = result["flight_points"][1]["coefficient_errors"]["Cm"]
+        assert float(data.Cm_error.sel(flight_point="Mach 1.5", part="total")) == error
         assert data.mach.values == pytest.approx([0.8, 1.5, 2.5])
 
 

@@ -86,3 +86,11 @@ def test_values_beyond_the_limits_when_asked():
 def test_the_example_is_a_study():
     study = load_study(Path(__file__).parents[2] / "examples" / "sensitivity.yaml")
     assert len(plan(study)) == 6
+
+
+def test_the_companion_mesh_is_off_in_a_study_unless_asked_for():
+    from spaceplane.study.shapes import case_inputs
+
+    assert case_inputs("horus-2b", {}, (2.5,), {})["settings"]["uncertainty"] == "iteration"
+    asked = case_inputs("horus-2b", {}, (2.5,), {"uncertainty": "mesh"})
+    assert asked["settings"]["uncertainty"] == "mesh"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -12,6 +12,10 @@ from spaceplane.aero.conditions import product
 from spaceplane.aero.increments.add import WITH_SOURCES, integrate_with
 from spaceplane.aero.increments.settings import Air, IncrementSettings
 from spaceplane.aero.integrate import BY_SOURCE, COEFFICIENTS, PRESSURES, TOTAL, Reference
+from spaceplane.aero.uncertainty.accuracy import Accuracy, Refined, Trial, at_wall_cell, refine, relative
+from spaceplane.aero.uncertainty.companion import RATIO, Companion, coarser
+from spaceplane.aero.uncertainty.errors import error_record, of_coefficients
+from spaceplane.aero.uncertainty.settings import ITERATION, MESH
 from spaceplane.environment.atmosphere import Ambient
 from spaceplane.errors import InputError
 from spaceplane.flow.freestream import velocity
@@ -22,7 +26,7 @@ from spaceplane.mesh.generate import generate
 from spaceplane.mesh.mesh import Mesh
 from spaceplane.mesh.settings import MeshSettings
 from spaceplane.plain import degrees, finite
-from spaceplane.progress import Progress
+from spaceplane.progress import Progress, silent
 from spaceplane.vehicle.surface import Surface
 
 FASTEST_POINT = 0.5
@@ -40,12 +44,14 @@ class FlowCase:
         coefficients: the same by part, see `integrate_with`.
         mesh: the mesh.
         solution: the flow.
+        companion: the same on a coarser mesh, for the errors of the mesh; None where there is none.
     """
 
     records: list[dict]
     coefficients: xr.Dataset
     mesh: Mesh
     solution: Solution
+    companion: Companion | None = None
 
 
 def run_flow(
@@ -60,6 +66,7 @@ def run_flow(
     rates: tuple[float, float, float] = (0.0, 0.0, 0.0),
     increments: IncrementSettings | None = None,
     ambient: Ambient | None = None,
+    uncertainty: str = ITERATION,
 ) -> FlowCase:
     """Mesh a body and solve every combination of Mach number, angle of attack and sideslip in one ensemble.
 
@@ -76,6 +83,8 @@ def run_flow(
             in m/s, 1/m.
         increments: viscous increments; none when None.
         ambient: undisturbed air of every condition, for skin friction.
+        uncertainty: "mesh" solves everything again on a coarser companion mesh, and the records hold
+            `coefficient_errors` with the uncertainty by the mesh; "iteration" leaves that out.
 
     Raises:
         InputError: a bad condition or body, rates that move some point of the body at more than half the flight
@@ -86,7 +95,87 @@ def run_flow(
     if progress:
         progress("mesh", 0, 1, "")
     mesh = generate(body, mesh_settings, progress)
-    return _solved(mesh, conditions, reference, flow_settings, progress, *viscous)
+    case = _solved(mesh, conditions, reference, flow_settings, progress, *viscous)
+    if uncertainty != MESH:
+        return case
+
+    def say(phase: str, done: int, total: int, text: str) -> None:
+        (progress or silent)(f"companion: {phase}", done, total, text)
+
+    wall_cell = float(mesh.record["wall_cell_m"])
+    coarse = generate(body, coarser(mesh_settings, wall_cell), say)
+    return _compared(case, _solved(coarse, conditions, reference, flow_settings, say, *viscous), RATIO)
+
+
+def run_to_accuracy(
+    body: Surface,
+    machs: Sequence[float],
+    alphas: Sequence[float],
+    betas: Sequence[float],
+    reference: Reference,
+    mesh_settings: MeshSettings,
+    flow_settings: FlowSettings,
+    accuracy: Accuracy,
+    progress: Progress | None = None,
+    rates: tuple[float, float, float] = (0.0, 0.0, 0.0),
+    increments: IncrementSettings | None = None,
+    ambient: Ambient | None = None,
+    tell: Callable[[Trial], None] | None = None,
+) -> tuple[FlowCase, Refined]:
+    """As `run_flow`, on meshes made finer until the coefficients are as certain as asked; the last mesh's flow.
+
+    Args:
+        body, machs, alphas, betas, reference, flow_settings, progress, rates, increments, ambient: as for `run_flow`.
+        mesh_settings: how to mesh; the wall cell is chosen here.
+        accuracy: what is asked, and the most cells; see `refine`.
+        tell: called with each mesh once it is solved.
+
+    Returns:
+        The case, whose records hold `coefficient_errors` and `accuracy` ("target", "reached", "met" of the condition),
+        and the way there.
+
+    Raises:
+        InputError: as `run_flow`, or fewer cells allowed than two meshes of this body have.
+    """
+    conditions = _turning(product(list(machs), list(alphas), list(betas)), rates, reference, body.points)
+    viscous = _viscous(increments, ambient, len(conditions))
+    last: FlowCase | None = None
+    number = 1
+
+    def say(phase: str, done: int, total: int, text: str) -> None:
+        (progress or silent)(f"mesh {number}: {phase}", done, total, text)
+
+    def make(cell: float | None) -> Mesh:
+        return generate(body, at_wall_cell(mesh_settings, cell), say)
+
+    def solved(mesh: Mesh) -> xr.Dataset:
+        nonlocal last, number
+        last = None  # its state is as large as the next one's
+        last = _solved(mesh, conditions, reference, flow_settings, say, *viscous)
+        number += 1
+        return last.coefficients
+
+    found = refine(make, solved, accuracy, tell)
+    case = last
+    rows = records(case.solution, found.coefficients)
+    for row, reached in zip(rows, relative(found.coefficients), strict=True):
+        met = bool(reached <= accuracy.target)
+        row["accuracy"] = {"target": accuracy.target, "reached": finite(reached), "met": met}
+    return replace(case, records=rows, coefficients=found.coefficients), found
+
+
+def _compared(case: FlowCase, coarse: FlowCase, ratio: float) -> FlowCase:
+    """The case with the errors that a coarser mesh, of cells `ratio` times as large, shows."""
+    coefficients = of_coefficients(case.coefficients, coarse.coefficients, ratio)
+    companion = Companion(
+        coarse.coefficients,
+        coarse.solution.records,
+        ratio,
+        float(coarse.mesh.record["wall_cell_m"]),
+        coarse.mesh.cells,
+        {"flow": total_seconds(coarse.solution)},
+    )
+    return replace(case, records=records(case.solution, coefficients), coefficients=coefficients, companion=companion)
 
 
 def run_on_mesh(
@@ -186,7 +275,8 @@ def records(solution: Solution, coefficients: xr.Dataset) -> list[dict]:
     Keys: mach, alpha_deg, beta_deg, p_hat, q_hat, r_hat (reduced rates), COEFFICIENTS, PRESSURES, converged,
     verdict, residual_drop, iterations, seconds, cells, reason. `seconds` is the wall time of the whole ensemble
     divided by its conditions. Values of a failed condition are None. With viscous increments, `by_source` holds what
-    "inviscid", "friction" and "base" add to the coefficients.
+    "inviscid", "friction" and "base" add to the coefficients. With errors, `coefficient_errors` and
+    `coefficient_errors_by_source` as of `error_record`.
     """
     totals = coefficients.sel(part=TOTAL)
     seconds = total_seconds(solution) / max(len(solution.conditions), 1)
@@ -202,6 +292,7 @@ def records(solution: Solution, coefficients: xr.Dataset) -> list[dict]:
             cells=solution.mesh.cells,
             reason=record.reason,
             **_by_source(totals, i),
+            **(error_record(totals.isel(condition=i)) if "CL_error" in totals else {}),
         )
         for i, record in enumerate(solution.records)
     ]

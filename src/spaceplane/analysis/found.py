@@ -10,6 +10,7 @@ from spaceplane.aero.bodies import ControlRun, SolvedBody
 from spaceplane.aero.conditions import ConditionPlan
 from spaceplane.aero.database import AeroDatabase
 from spaceplane.aero.derivatives import CONVERGED
+from spaceplane.analysis.aerodynamics import Aerodynamics
 from spaceplane.analysis.flight import PointAnalysis
 from spaceplane.analysis.settings import AnalyseSettings
 from spaceplane.dynamics.derivatives import DAMPING, STATIC
@@ -23,11 +24,8 @@ class Analysis:
     Attributes:
         vehicle: what was analysed.
         settings: how.
-        body: the base body, its mesh and flow.
         plan: which condition of the ensemble is for what.
-        coefficients: of the base ensemble, by part.
-        control_runs: one per moved surface and step.
-        derivatives: dims (point, part).
+        aerodynamics: bodies and their flow, coefficients and derivatives.
         points: one per flight point.
         database: every case and derivative.
         warnings: what a reader must know, one line each.
@@ -35,14 +33,31 @@ class Analysis:
 
     vehicle: Vehicle
     settings: AnalyseSettings
-    body: SolvedBody
     plan: ConditionPlan
-    coefficients: xr.Dataset
-    control_runs: tuple[ControlRun, ...]
-    derivatives: xr.Dataset
+    aerodynamics: Aerodynamics
     points: tuple[PointAnalysis, ...]
     database: AeroDatabase
     warnings: tuple[str, ...]
+
+    @property
+    def body(self) -> SolvedBody:
+        """The base body, its mesh and flow."""
+        return self.aerodynamics.body
+
+    @property
+    def coefficients(self) -> xr.Dataset:
+        """Of the base ensemble, by part."""
+        return self.aerodynamics.coefficients
+
+    @property
+    def control_runs(self) -> tuple[ControlRun, ...]:
+        """One per moved surface and step."""
+        return self.aerodynamics.control_runs
+
+    @property
+    def derivatives(self) -> xr.Dataset:
+        """Dims (point, part), per rad or per unit Mach number."""
+        return self.aerodynamics.derivatives
 
     def seconds(self) -> dict[str, float]:
         """Wall time, s, by phase."""
@@ -50,16 +65,13 @@ class Analysis:
         for key in ("geometry", "mesh", "flow"):
             if self.control_runs:
                 total[f"{key} (controls)"] = sum(run.seconds[key] for run in self.control_runs)
+        if self.aerodynamics.companion is not None:
+            total |= {f"{key} (companion)": value for key, value in self.aerodynamics.companion.seconds.items()}
         return total
 
 
 def remarks(
-    vehicle: Vehicle,
-    body: SolvedBody,
-    plan: ConditionPlan,
-    runs: tuple[ControlRun, ...],
-    found: tuple[PointAnalysis, ...],
-    derivatives: xr.Dataset,
+    vehicle: Vehicle, plan: ConditionPlan, aero: Aerodynamics, found: tuple[PointAnalysis, ...]
 ) -> tuple[str, ...]:
     """What a reader must know of an analysis, one line each.
 
@@ -67,8 +79,9 @@ def remarks(
     validity of continuum and ideal gas, and modes that rest on conditions that did not converge.
 
     Args:
-        vehicle, body, plan, runs, found, derivatives: as the fields of `Analysis`.
+        vehicle, plan, aero, found: as the fields of `Analysis`.
     """
+    body, runs, derivatives = aero.body, aero.control_runs, aero.derivatives
     lines = [
         f"{name} = {getattr(vehicle.shape, name):g} lies outside its limits" for name in vehicle.shape.outside_limits()
     ]
@@ -76,6 +89,12 @@ def remarks(
     judged = [(found[plan.point[i]].point.name, plan.labels[i], one) for i, one in enumerate(body.solution.records)]
     judged += [(at.point.name, run.label, one) for run in runs for at, one in zip(found, run.records, strict=True)]
     lines += [f"{name}, condition {label}: {one.verdict}: {one.reason}" for name, label, one in judged if not one.good]
+    astray = sum(not one.good for one in aero.companion.records) if aero.companion else 0
+    if astray:
+        lines.append(
+            f"companion mesh: {astray} of {len(aero.companion.records)} conditions did not converge; errors that "
+            "rest on them hold their wandering, or are missing where they failed"
+        )
     for index, point in enumerate(found):
         name = point.point.name
         lines += [f"{name}: {note}" for note in point.validity.notes]

@@ -9,6 +9,7 @@ from typing import Any
 
 from spaceplane.aero.conditions import DerivativeSteps
 from spaceplane.aero.increments.settings import VISCOUS, IncrementSettings
+from spaceplane.aero.uncertainty.settings import LOOSEST, MESH, SOURCES, TIGHTEST
 from spaceplane.dynamics.flightpoint import TAEM_MACH, FlightPoint, taem_point
 from spaceplane.dynamics.linearise import FORMS
 from spaceplane.errors import InputError
@@ -84,6 +85,11 @@ class AnalyseSettings:
         mesh: how to mesh; the default, a wall cell of 0.25 m, is meant to answer in about two minutes on two cores.
         flow: how to solve.
         increments: viscous increments over the inviscid coefficients: turbulent skin friction and a correlated base.
+        uncertainty: "mesh" solves everything again on a coarser companion mesh, for the uncertainty of coefficients and
+            derivatives by the mesh (a third more time); "iteration" leaves that out.
+        accuracy: choose the wall cell such that the uncertainty of C_L, C_D and C_m at the base conditions falls below
+            this fraction of the force coefficient's size; `mesh.target_cells` is then the most cells, what fits into
+            memory without it.
         form: form of the linear model.
         vehicle_class: class of MIL-F-8785C.
         category: flight phase category of MIL-F-8785C.
@@ -101,6 +107,8 @@ class AnalyseSettings:
     mesh: MeshSettings = field(default_factory=lambda: MeshSettings(wall_cell=0.25))
     flow: FlowSettings = field(default_factory=FlowSettings)
     increments: IncrementSettings = VISCOUS
+    uncertainty: str = MESH
+    accuracy: float | None = None
     form: str = "rigid-body"
     vehicle_class: str = "III"
     category: str = "B"
@@ -115,12 +123,18 @@ class AnalyseSettings:
             values = getattr(self, name)
             if values is not None and len(values) != len(self.mach):
                 raise InputError(f"{name}: {len(values)} values for {len(self.mach)} Mach numbers; give one for each")
+        if self.accuracy is not None:
+            if not TIGHTEST <= self.accuracy <= LOOSEST:
+                raise InputError(f"accuracy = {self.accuracy}: allowed are {TIGHTEST:g} to {LOOSEST:g}")
+            if self.uncertainty != MESH:
+                raise InputError(f"accuracy = {self.accuracy}: needs uncertainty = '{MESH}'")
         if not 0.0 < self.control_step <= math.radians(20.0):
             raise InputError(f"control_step = {math.degrees(self.control_step):g} deg: above 0 and at most 20 deg")
         for name, value, allowed in (
             ("form", self.form, FORMS),
             ("vehicle_class", self.vehicle_class, limits.CLASSES),
             ("category", self.category, limits.CATEGORIES),
+            ("uncertainty", self.uncertainty, SOURCES),
         ):
             if value not in allowed:
                 raise InputError(f"{name} = {value!r}: allowed are {', '.join(allowed)}")
@@ -139,6 +153,8 @@ class AnalyseSettings:
         deflections = values.pop("deflections", None)
         mesh = values.get("mesh")
         if isinstance(mesh, Mapping) and "wall_cell" in mesh:
+            if values.get("accuracy") is not None:
+                raise InputError(f"mesh.wall_cell = {mesh['wall_cell']!r}: accuracy chooses it; give one of the two")
             # a wall cell that is asked for is not for the target to move
             values["mesh"] = {"target_cells": None, **mesh}
         settings = override(cls(), values, READERS)

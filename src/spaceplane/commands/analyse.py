@@ -42,6 +42,8 @@ def analyse(
     ] = None,
     cell: options.Cell = None,
     cells: options.Cells = None,
+    uncertainty: options.Uncertainty = "mesh",
+    accuracy: options.AccuracyText = None,
     precision: options.Precision = "fp32",
     form: Annotated[
         str, typer.Option("--form", metavar="rigid-body|thesis", help="Form of the linear model.")
@@ -67,12 +69,14 @@ def analyse(
     """Geometry, flow, derivatives, modes, flying-quality levels and a report of one vehicle.
 
     Writes result.json, aero.nc, geometry.stl, surface.vtp and report.html into --out. Exit code 0 when every flow
-    condition converged, 1 when one did not, 2 for bad input.
+    condition converged (and the accuracy asked for was reached), 1 when not, 2 for bad input.
     """
     machs = mach_numbers(mach)
     folder = out or Path("out") / re.sub(r"[^\w.-]+", "-", Path(vehicle).stem if "/" in vehicle else vehicle)
     subject = options.load_vehicle(vehicle, changes, allow_outside_limits)
     increments = options.increment_settings(friction, base, wall_temperature, emissivity, transition_reynolds)
+    asked = options.accuracy(accuracy, cell, cells, uncertainty)
+    stated = options.uncertainty(uncertainty)
     settings = _settings(machs, alpha, deflect, allow_outside_limits, cell, cells, precision)
     steps = replace(settings.steps, two_step_sizes=True) if two_steps else settings.steps
     settings = replace(
@@ -83,6 +87,8 @@ def analyse(
         controls=controls,
         steps=steps,
         increments=increments,
+        uncertainty=stated,
+        accuracy=asked,
     )
     writable_folder(folder, "--out")
     writable_file(json_file, "--json")
@@ -100,13 +106,12 @@ def analyse(
 
 
 def _bodies(settings: AnalyseSettings) -> int:
-    """How many bodies an analysis meshes: the base, and one for each moved control surface."""
+    """How many bodies an analysis meshes: the base, one for each moved control surface, and their companions."""
     from spaceplane.aero.bodies import is_symmetric
 
-    if not settings.controls:
-        return 1
     surfaces = 3 if is_symmetric(settings.deflections) else 5
-    return 1 + surfaces * (2 if settings.steps.two_step_sizes else 1)
+    moved = surfaces * (2 if settings.steps.two_step_sizes else 1) if settings.controls else 0
+    return (1 + moved) * (2 if settings.uncertainty == "mesh" else 1) + (settings.accuracy is not None)
 
 
 def _settings(

@@ -141,6 +141,25 @@ def count(option: str, text: str, unit: str) -> int:
     return round(scale * positive(option, digits, unit))
 
 
+def fraction(option: str, text: str) -> float:
+    """A share above 0, such as 1% or 0.01.
+
+    Raises:
+        InputError: not a number, or not above 0.
+    """
+    stripped = text.strip()
+    percent = stripped.endswith("%")
+    try:
+        value = float(stripped.removesuffix("%"))
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise InputError(f"{option}: {stripped!r} is not a share such as 1% or 0.01")
+    if value <= 0:
+        raise InputError(f"{option}: {stripped}, must be above 0")
+    return value / 100.0 if percent else value
+
+
 def assignments(option: str, texts: Sequence[str] | None) -> dict[str, float]:
     """`name=value` texts (also several between commas) as a dict of numbers, each in the unit that its name implies.
 

@@ -11,6 +11,7 @@ import typer
 from spaceplane.commands import options
 from spaceplane.commands.arguments import (
     angles,
+    count,
     existing_file,
     list_of_names,
     mach_numbers,
@@ -32,6 +33,7 @@ if TYPE_CHECKING:
     from spaceplane.vehicle.surface import Surface
 
 EULER = "euler"
+LIKELY_MESHES = 4  # on the way to an accuracy, for the progress bar
 EXAMPLE = (
     "Example: spaceplane flow cone.stl --mach 1.5,3 --alpha 0,5 --area 1 --length 2 --span 1 --moment-center 0,0,0 "
     "--cell 0.05 --json cone.json"
@@ -92,6 +94,8 @@ def flow(
         str | None,
         typer.Option("--symmetry", metavar="NAME[,NAME...]", help="Markers of --mesh that are planes of symmetry."),
     ] = None,
+    uncertainty: options.Uncertainty = None,
+    accuracy: options.AccuracyText = None,
     precision: options.Precision = "fp32",
     friction: options.Friction = "off",
     base: options.Base = "inviscid",
@@ -112,7 +116,7 @@ def flow(
     With a --method other than euler: local inclination, without a mesh.
     Skin friction and base pressure are added if asked for.
 
-    Exit code 0 when every condition converged, 1 when one did not, 2 for bad input.
+    Exit code 0 when every condition converged (and the accuracy asked for was reached), 1 when not, 2 for bad input.
     """
     machs, alphas, betas = mach_numbers(mach), angles("--alpha", alpha), angles("--beta", beta)
     turning = numbers("--rates", rates, "rad/s", 3)
@@ -126,11 +130,14 @@ def flow(
     increments = options.increment_settings(friction, base, wall_temperature, emissivity, transition_reynolds)
     ambient = _ambient(altitude, friction, any(turning))
     roles = {"wall": wall, "far": far, "symmetry": symmetry}
-    mesh_options = {"--cell": cell, "--cells": cells, "--domain": domain}
+    mesh_options = {"--cell": cell, "--cells": cells, "--domain": domain, "--accuracy": accuracy}
+    mesh_options["--uncertainty"] = uncertainty if uncertainty == "mesh" else None
     if mesh_file is None:
         _check_body(body, roles)
     else:
         _check_mesh_file(mesh_file, {"BODY.stl": body, **mesh_options}, method)
+    asked = options.accuracy(accuracy, cell, cells, uncertainty)
+    stated = options.uncertainty("iteration" if uncertainty is None else uncertainty)
     chosen = {role: list_of_names(f"--{role}", text) for role, text in roles.items()}
     writable_file(json_file, "--json")
     writable_file(vtu, "--vtu", (".vtu",))
@@ -160,11 +167,14 @@ def flow(
         from spaceplane.vehicle.stl import read_stl
 
         surface = read_stl(body)
+        args = surface, machs, alphas, betas, reference, mesh, settings
+        if asked is not None:
+            return _to_accuracy(asked, cells, args, extra, json_file, vtu, vtp)
         from spaceplane.aero.flow_case import run_flow  # the numerical stack: after all that can be refused without it
 
-        with progress_bar() as tell:
+        with progress_bar(2 if stated == "mesh" else 1) as tell:
             tell("mesh", 0, 1, "")
-            case = run_flow(surface, machs, alphas, betas, reference, mesh, settings, tell, **extra)
+            case = run_flow(*args, tell, **extra, uncertainty=stated)
     else:
         from spaceplane.mesh.imported import read_mesh
 
@@ -177,6 +187,33 @@ def flow(
             case = run_on_mesh(imported.mesh, machs, alphas, betas, reference, settings, tell, **extra)
     _write(case, surface, imported, vtu, vtp)
     return _tell(case, json_file)
+
+
+def _to_accuracy(
+    asked: float,
+    cells: str | None,
+    args: tuple,
+    extra: dict,
+    json_file: Path | None,
+    vtu: Path | None,
+    vtp: Path | None,
+) -> int:
+    """Refine until the accuracy is reached, write and tell what was; return the exit code."""
+    from spaceplane.aero.flow_case import run_to_accuracy
+    from spaceplane.aero.uncertainty.accuracy import Accuracy, Trial, cells_in_memory
+    from spaceplane.report.summary import accuracy_line, trial_line
+
+    wanted = Accuracy(asked, cells_in_memory() if cells is None else count("--cells", cells, "cells"))
+
+    def say(trial: Trial) -> None:
+        typer.echo(trial_line(trial), err=True)
+
+    with progress_bar(LIKELY_MESHES) as tell:
+        case, found = run_to_accuracy(*args, wanted, tell, **extra, tell=say)
+    _write(case, args[0], None, vtu, vtp)
+    code = _tell(case, json_file)
+    typer.echo(accuracy_line(wanted, found), err=True)
+    return code if found.met else 1
 
 
 def _tell(case: FlowCase, json_file: Path | None) -> int:

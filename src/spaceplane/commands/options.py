@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from spaceplane.commands.arguments import assignments, count, number, positive
-from spaceplane.errors import InputError
+from spaceplane.commands.arguments import assignments, count, fraction, number, positive
+from spaceplane.errors import InputError, unknown_name
 
 if TYPE_CHECKING:
     from spaceplane.aero.increments.settings import IncrementSettings
@@ -43,6 +43,24 @@ Precision = Annotated[
 ]
 JsonFile = Annotated[
     Path | None, typer.Option("--json", metavar="FILE", help="Write the result as JSON; - for standard output.")
+]
+
+Uncertainty = Annotated[
+    str | None,
+    typer.Option(
+        "--uncertainty",
+        metavar="mesh|iteration",
+        help="What the ± of coefficients and derivatives holds: with mesh, a coarser companion mesh is solved too.",
+    ),
+]
+AccuracyText = Annotated[
+    str | None,
+    typer.Option(
+        "--accuracy",
+        metavar="1%",
+        help="Refine the mesh until the uncertainty of C_L, C_D and C_m is below this share of the force coefficient; "
+        "--cells is then the most cells to use.",
+    ),
 ]
 
 Friction = Annotated[
@@ -109,6 +127,49 @@ def mesh_settings(cell: str | None, cells: str | None, default: MeshSettings) ->
     if cells is not None:
         return replace(default, target_cells=count("--cells", cells, "cells"))
     return default
+
+
+def uncertainty(text: str) -> str:
+    """What the stated uncertainty shall hold.
+
+    Raises:
+        InputError: unknown.
+    """
+    from spaceplane.aero.uncertainty.settings import SOURCES
+
+    if text not in SOURCES:
+        raise InputError("--uncertainty: " + unknown_name("uncertainty", text, SOURCES))
+    return text
+
+
+def accuracy(text: str | None, cell: str | None, cells: str | None, uncertainty: str | None) -> float | None:
+    """The accuracy asked for, as a fraction.
+
+    Args:
+        text: of --accuracy.
+        cell: of --cell, which does not go with it.
+        cells: of --cells, the most to use.
+        uncertainty: of --uncertainty; "iteration" does not go with it.
+
+    Raises:
+        InputError: not a number, out of range, or beside what it excludes.
+    """
+    if text is None:
+        return None
+    value = fraction("--accuracy", text)
+    if cell is not None:
+        raise InputError(f"--accuracy: {text}, not allowed with --cell, which it chooses; --cells is the most to use")
+    if uncertainty == "iteration":
+        raise InputError(
+            f"--accuracy: {text}, not allowed with --uncertainty iteration: it is the mesh that is refined"
+        )
+    from spaceplane.aero.uncertainty.settings import FIRST_CELLS, LOOSEST, TIGHTEST
+
+    if cells is not None and count("--cells", cells, "cells") < FIRST_CELLS:
+        raise InputError(f"--cells: {cells}, at least {FIRST_CELLS} with --accuracy")
+    if not TIGHTEST <= value <= LOOSEST:
+        raise InputError(f"--accuracy: {text}, allowed {100 * TIGHTEST:g}% to {100 * LOOSEST:g}%")
+    return value
 
 
 def increment_settings(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from datetime import UTC, datetime
 
 import numpy as np
@@ -11,7 +12,11 @@ from spaceplane import __version__
 from spaceplane.aero.axes import FORCES_AND_MOMENTS
 from spaceplane.aero.conditions import ConditionPlan
 from spaceplane.aero.increments.add import INVISCID, WITH_SOURCES
-from spaceplane.aero.integrate import BY_SOURCE, COEFFICIENTS, PRESSURES, TOTAL, WITH_SPREAD, wetted_area
+from spaceplane.aero.integrate import BY_SOURCE, COEFFICIENTS, PRESSURES, TOTAL, wetted_area
+from spaceplane.aero.uncertainty.accuracy import cells_needed, relative
+from spaceplane.aero.uncertainty.errors import OF_MESH, OF_STEP, error_record
+from spaceplane.aero.uncertainty.grid import LEVEL, ORDER, SAFETY
+from spaceplane.aero.uncertainty.settings import ITERATION, MESH
 from spaceplane.analysis.flight import PointAnalysis
 from spaceplane.analysis.found import Analysis
 from spaceplane.dynamics.modes import to_record as mode_record
@@ -37,6 +42,8 @@ def result(analysis: Analysis) -> dict:
             "settings": analysis.settings.as_dict(),
             "mesh": mesh(analysis),
             "solver": solver(analysis),
+            "uncertainty": uncertainty(analysis),
+            "accuracy": accuracy(analysis),
             "flight_points": [flight_point(analysis, index) for index in range(len(analysis.points))],
             "warnings": list(analysis.warnings),
         }
@@ -103,7 +110,7 @@ def flight_point(analysis: Analysis, index: int) -> dict:
             "notes": list(found.validity.notes),
         },
         "coefficients": coefficients,
-        "coefficient_errors": {name: float(totals[f"{name}_spread"]) for name in WITH_SPREAD},
+        **error_record(totals),
         "coefficients_by_source": coefficients_by_source(totals),
         "coefficients_by_part": coefficients_by_part(analysis.coefficients, analysis.plan.points[index].base),
         "derivatives": derivatives(analysis.derivatives, index),
@@ -144,6 +151,7 @@ def derivatives(data: xr.Dataset, point: int) -> dict:
         name: {
             "value": float(at[name].sel(part=TOTAL)),
             "error": float(at[f"{name}_error"]),
+            "error_by_source": derivative_error_by_source(at, name),
             "unit": at[name].attrs["units"],
             "step": float(at[f"{name}_step"]),
             "step_unit": at[f"{name}_step"].attrs["units"],
@@ -151,6 +159,49 @@ def derivatives(data: xr.Dataset, point: int) -> dict:
             "by_part": {str(part): float(at[name].sel(part=part)) for part in at.part.values if part != TOTAL},
         }
         for name in names
+    }
+
+
+def derivative_error_by_source(at: xr.Dataset, name: str) -> dict:
+    """Source ("difference", "mesh") to error of a derivative at one flight point; "mesh" only where it is known."""
+    if f"{name}{OF_MESH}" not in at:
+        return {"difference": float(at[f"{name}_error"])}
+    return {"difference": float(at[f"{name}{OF_STEP}"]), MESH: float(at[f"{name}{OF_MESH}"])}
+
+
+def uncertainty(analysis: Analysis) -> dict:
+    """What the stated errors hold, and the companion mesh that those of the mesh come from."""
+    companion = analysis.aerodynamics.companion
+    if companion is None:
+        return {"sources": [ITERATION]}
+    return {
+        "sources": [ITERATION, MESH],
+        "level": LEVEL,
+        "ratio": companion.ratio,
+        "order": ORDER,
+        "safety": SAFETY,
+        "wall_cell_m": companion.wall_cell,
+        "cells": companion.cells,
+        "conditions": len(companion.records),
+        "unconverged": sum(not one.good for one in companion.records),
+    }
+
+
+def accuracy(analysis: Analysis) -> dict | None:
+    """What accuracy was asked for and what was reached at the base conditions; None where none was asked for."""
+    refined = analysis.aerodynamics.refined
+    if refined is None:
+        return None
+    rows = [p.base for p in analysis.plan.points]
+    reached = float(relative(analysis.coefficients.isel(condition=rows)).max())
+    target = analysis.settings.accuracy
+    cells = analysis.body.solution.mesh.cells
+    return {
+        "target": target,
+        "reached": reached,
+        "met": reached <= target,
+        "needed_cells": cells_needed(cells, reached, target) if reached > target else None,
+        "meshes": [asdict(trial) for trial in refined.trials],
     }
 
 

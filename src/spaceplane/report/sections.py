@@ -54,6 +54,8 @@ def whole(result: dict) -> dict:
         "flight_rows": _flight_rows(points),
         "coefficient_rows": _coefficient_rows(points),
         "increments": increments_text(result),
+        "uncertainty": uncertainty_text(result),
+        "derivative_uncertainty": derivative_uncertainty_text(result),
         "derivative_groups": _derivative_groups(points),
         "point_colours": POINT_COLOURS,
         "together": Markup(eigenvalues_together(points)),
@@ -125,6 +127,10 @@ def _chips(result: dict) -> list[tuple[str, str]]:
     solver = result.get("solver") or {}
     if solver.get("precision"):
         chips.append(("", PRECISIONS.get(solver["precision"], str(solver["precision"]))))
+    asked = result.get("accuracy")
+    if asked:
+        reached = f"{number(100.0 * asked['reached'], 2)} %" if is_number(asked["reached"]) else "unknown"
+        chips.append(("good" if asked["met"] else "bad", f"accuracy {reached}, {100.0 * asked['target']:g} % asked"))
     total = total_seconds(result)
     if total:
         chips.append(("", f"computed in {duration(total)}"))
@@ -188,6 +194,40 @@ def increments_text(result: dict) -> str:
     if base != "inviscid":
         pieces.append("base pressure by correlation")
     return f"With {' and '.join(pieces)} over the inviscid flow; the parts are listed apart." if pieces else ""
+
+
+def _companion(result: dict) -> str:
+    """The companion mesh in words; empty where there was none."""
+    found = result.get("uncertainty") or {}
+    if not is_number(found.get("cells")):
+        return ""
+    size = f"{grouped(found['cells'])} cells, at the wall {number(found.get('ratio'), 2)} times as large"
+    return f"a coarser companion mesh ({size})"
+
+
+def uncertainty_text(result: dict) -> str:
+    """What the ± of a coefficient means, in one sentence."""
+    companion = _companion(result)
+    if companion:
+        return (
+            f"The ± is the numerical uncertainty, meant to hold the exact inviscid value in "
+            f"{100 * result['uncertainty']['level']:.0f} % of all cases: what {companion} shows of the mesh's error, "
+            "and how far the value still wandered over the last iterations."
+        )
+    return (
+        "The ± of a force is how far it still wandered over the last iterations, that of a moment what this wandering "
+        "means at the wall's root-mean-square distance from the moment centre; the error of the mesh is in neither."
+    )
+
+
+def derivative_uncertainty_text(result: dict) -> str:
+    """What the ± of a derivative means, in one sentence."""
+    if _companion(result):
+        return (
+            "The ± holds the error of the difference quotient and that of the mesh: the same quotient on the companion "
+            "mesh."
+        )
+    return "The ± is the error of the difference quotient; that of the mesh is not in it."
 
 
 def _source_rows(name: str, points: list[dict]) -> list[dict]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import sys
 from collections.abc import Iterable
 from pathlib import Path
@@ -20,6 +21,7 @@ from spaceplane.report.read import level_text
 from spaceplane.report.sections import total_seconds, unconverged, warnings
 
 if TYPE_CHECKING:
+    from spaceplane.aero.uncertainty.accuracy import Accuracy, Refined, Trial
     from spaceplane.validation.records import Record
 
 COLOURS = {"good": "green", "fair": "yellow", "poor": "dark_orange", "bad": "red"}
@@ -39,6 +41,11 @@ def shortcomings(result: dict) -> list[str]:
     found += [f"{p['name']}: no modes" for p in result["flight_points"] if not p.get("modes")]
     if not result["flight_points"]:
         found.append("no flight point")
+    asked = result.get("accuracy")
+    if asked and not asked["met"]:
+        reached = asked["reached"]
+        share = "unknown" if reached is None else percent(reached)
+        found.append(f"accuracy: {percent(asked['target'])} asked, {share} reached")
     return found
 
 
@@ -65,6 +72,12 @@ def print_summary(result: dict, report: Path | None = None, console: Console | N
     for line in warnings(result):
         console.print(Text(f"warning: {line}", style="yellow"), highlight=False, soft_wrap=True)
     console.print(_convergence_line(result), highlight=False)
+    asked = result.get("accuracy")
+    if asked:
+        reached = "unknown" if asked["reached"] is None else percent(asked["reached"])
+        verb = "met" if asked["met"] else "NOT met"
+        text = f"accuracy: {percent(asked['target'])} {verb}: C_L, C_D and C_m within {reached} of the force"
+        console.print(Text(text, style="green" if asked["met"] else "red"), highlight=False)
     if report is not None:
         console.print(f"report: {report}", highlight=False, soft_wrap=True)
 
@@ -93,8 +106,8 @@ def _points_table(points: list[dict]) -> Table:
     table.add_row("altitude, km", *(fixed(_scaled(p.get("altitude_m"), 1e-3), 1) for p in points))
     table.add_row("alpha, deg", *(fixed(p.get("alpha_deg"), 1) for p in points))
     for name in COEFFICIENT_ROWS:
-        values = [(p.get("coefficients") or {}).get(name) for p in points]
-        table.add_row("L/D" if name == "L_over_D" else name, *(fixed(v, 4) for v in values))
+        cells = [_coefficient_cell(p, name) for p in points]
+        table.add_row("L/D" if name == "L_over_D" else name, *cells)
     table.add_section()
     table.add_row(Text("per rad, per Mach", style="dim"))
     for name in DERIVATIVE_ROWS:
@@ -102,6 +115,11 @@ def _points_table(points: list[dict]) -> Table:
         if any(records):
             table.add_row(name, *(_derivative_cell(name, r) for r in records))
     return table
+
+
+def _coefficient_cell(point: dict, name: str) -> str:
+    value, error = ((point.get(key) or {}).get(name) for key in ("coefficients", "coefficient_errors"))
+    return str(measured(value, error)) if is_number(error) and error > 0 else fixed(value, 4)
 
 
 def _derivative_cell(name: str, record: dict) -> Text:
@@ -150,6 +168,32 @@ def print_modes(record: dict, console: Console | None = None) -> None:
         console.print(_levels_table([{"name": "verdict", "verdicts": record["verdicts"]}]))
 
 
+def trial_line(trial: Trial) -> str:
+    """One mesh on the way to an accuracy."""
+    start = f"accuracy: {trial.cells} cells, wall cell {trial.wall_cell:.3g} m"
+    if trial.reached is None:
+        return f"{start}: nothing to compare with yet"
+    if not math.isfinite(trial.reached):
+        return f"{start}: unknown, {trial.worst} failed"
+    return f"{start}: {percent(trial.reached)} ({trial.worst})"
+
+
+def accuracy_line(wanted: Accuracy, found: Refined) -> str:
+    """Whether the accuracy asked for was reached, and what was."""
+    last = found.trials[-1]
+    verb = "met" if found.met else "NOT met"
+    line = f"accuracy: {percent(wanted.target)} {verb}: {percent(found.reached)} ({last.worst}) on {last.cells} cells"
+    if found.met:
+        return line
+    more = "" if found.needed is None else f"; about {found.needed:.2g} would be needed"
+    return f"{line}, at most {wanted.max_cells} allowed{more}"
+
+
+def percent(share: float) -> str:
+    """A share in per cent, two digits."""
+    return f"{100.0 * share:.2g} %" if math.isfinite(share) else "unknown"
+
+
 def print_flow(records: Iterable[dict], console: Console | None = None) -> None:
     """Print the coefficients of each condition of a `spaceplane flow` run."""
     console = console or _console()
@@ -162,6 +206,9 @@ def print_flow(records: Iterable[dict], console: Console | None = None) -> None:
         values = [fixed(r.get(name), 5) for name in names]
         where = [number(r["mach"], 3), fixed(r["alpha_deg"], 2), fixed(r["beta_deg"], 2)]
         table.add_row(*where, *values, Text(r.get("verdict") or "", style=style))
+        errors = r.get("coefficient_errors") or {}
+        if errors:
+            table.add_row("", "", "", *(f"±{fixed(errors.get(name), 5)}" for name in names), "", style="dim")
     console.print(table)
 
 

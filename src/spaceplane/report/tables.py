@@ -25,14 +25,19 @@ CONDITION_KEYS = (
 def coefficient_rows(result: dict) -> list[dict]:
     """A row for each flight point and part ("total" included), coefficients in columns.
 
-    With viscous increments, the total has columns such as CD_from_friction besides.
+    The total has columns such as CD_error besides, and with viscous increments such as CD_from_friction.
     """
     rows = []
     for p in result["flight_points"]:
         conditions = {"flight_point": p["name"], **{k: p.get(k) for k in CONDITION_KEYS}}
-        rows.append(conditions | {"part": "total"} | (p.get("coefficients") or {}) | _sources(p))
+        rows.append(conditions | {"part": "total"} | (p.get("coefficients") or {}) | _errors(p) | _sources(p))
         rows += [conditions | {"part": part} | values for part, values in (p.get("coefficients_by_part") or {}).items()]
     return rows
+
+
+def _errors(point: dict) -> dict:
+    """Error of each coefficient, such as CD_error."""
+    return {f"{name}_error": value for name, value in (point.get("coefficient_errors") or {}).items()}
 
 
 def _sources(point: dict) -> dict:

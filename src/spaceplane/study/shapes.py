@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 
+from spaceplane.aero.uncertainty.settings import ITERATION
 from spaceplane.errors import InputError
 from spaceplane.vehicle.shape import PARAMETERS
 
@@ -56,8 +57,8 @@ def case_inputs(
         vehicle: name of a preset, or a vehicle's YAML file.
         changes: shape parameters that differ from it, m or deg.
         mach: flight points.
-        settings: settings of the pipeline, as `AnalyseSettings.from_mapping` takes them; control derivatives are off
-            unless asked for.
+        settings: settings of the pipeline, as `AnalyseSettings.from_mapping` takes them; control derivatives and the
+            companion mesh are off unless asked for.
         allow_outside_limits: accept parameters beyond their limits.
 
     Raises:
@@ -69,7 +70,8 @@ def case_inputs(
     if "mach" in settings:
         raise InputError("settings: mach is a field of the study itself; take it out of settings")
     subject = presets.load(vehicle, dict(changes), allow_outside=allow_outside_limits)
-    resolved = AnalyseSettings.from_mapping({"controls": False, **settings, "mach": tuple(mach)})
+    default = {"controls": False, "uncertainty": ITERATION}
+    resolved = AnalyseSettings.from_mapping({**default, **settings, "mach": tuple(mach)})
     return {"vehicle": asdict(subject), "settings": resolved.as_dict()}
 
 

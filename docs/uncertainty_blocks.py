@@ -1,0 +1,69 @@
+"""The generated blocks of the page on uncertainty, from docs/data/uncertainty.json (scripts/check_uncertainty.py)."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+
+from blocks import DATA, number, table
+
+STORED = DATA / "uncertainty.json"
+SHOWN = ("CL", "CD", "CY", "Cl", "Cm", "Cn", "CL_alpha", "Cm_alpha", "CY_beta", "Cl_beta", "Cn_beta", "Cl_p", "Cm_q")
+SHOWN += ("Cn_r", "CL_elevon_left", "Cm_elevon_left")
+
+
+def stored() -> dict:
+    """What scripts/check_uncertainty.py kept."""
+    return json.loads(STORED.read_text(encoding="utf-8"))
+
+
+def coverage() -> str:
+    """How many intervals hold the true value, and how wide they are against the error."""
+    result = stored()
+    rows = [
+        (one["case"], one["kind"], one["values"], f"{100 * one['covered']:.0f} %", f"{one['median_ratio']:.1f}")
+        for one in result["groups"]
+    ]
+    cells = result["cells"]
+    head = ("case", "kind", "values", "true value inside", "median of stated over true error")
+    return (
+        f"{table(head, rows, 'llrrr')}\n\nHORUS-2B: {cells['mesh']} cells (wall cell {result['wall_cell_m']:g} m), "
+        f"companion {cells['companion']} cells, reference {cells['reference']} cells (wall cell "
+        f"{result['reference_cell_m']:g} m). The reference has an error of its own: taken on to the limit with the "
+        f"assumed order, {100 * result['covered_limit']:.0f} % of HORUS-2B's intervals hold the value."
+    )
+
+
+def values() -> str:
+    """Coefficients at the base conditions (lateral ones in sideslip) and derivatives of HORUS-2B, with their errors."""
+    rows = []
+    for row in stored()["rows"]:
+        mach, _, label = row["condition"].partition(", ")
+        lateral = row["quantity"] in ("CY", "Cl", "Cn")
+        wanted = ("beta",) if lateral else ("base", "")
+        if row["case"] != "HORUS-2B" or row["quantity"] not in SHOWN or label not in wanted:
+            continue
+        inside = "" if abs(row["error"]) <= row["stated"] else "outside"
+        name = f"{row['quantity']}{' in sideslip' if lateral else ''}"
+        shown = [number(row[key], 2 if key != "value" else 4) for key in ("value", "stated", "error")]
+        rows.append((SHOWN.index(row["quantity"]), (f"`{name}`", mach, *shown, inside)))
+    ordered = [cells for _, cells in sorted(rows, key=lambda pair: pair[0])]
+    return table(("quantity", "at", "value", "stated ±", "error", ""), ordered, "llrrrl")
+
+
+def cones() -> str:
+    """Cones against their exact solution."""
+    rows = []
+    for row in stored()["rows"]:
+        if row["case"] == "cones" and row["quantity"] in ("C_A forebody", "C_N_alpha", "C_n_beta"):
+            inside = "" if abs(row["error"]) <= row["stated"] else "outside"
+            shown = [number(row[key], 2 if key != "value" else 4) for key in ("value", "stated", "error")]
+            rows.append((row["quantity"], row["condition"], *shown, inside))
+    return table(("quantity", "at", "value", "stated ±", "error", ""), rows, "llrrrl")
+
+
+BLOCKS: dict[str, Callable[[], str]] = {
+    "uncertainty coverage": coverage,
+    "uncertainty values": values,
+    "uncertainty cones": cones,
+}

@@ -1,0 +1,1 @@
+"""Numerical uncertainty of coefficients and derivatives: from the iteration and from the mesh."""
