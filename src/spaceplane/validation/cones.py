@@ -23,6 +23,8 @@ HALF_ANGLES_DEG = (10.0, 20.0, 30.0)
 STEP = math.radians(1.0)
 WALL_LAYERS = 6
 """Layers of the finest cells; with three, C_N_alpha of the 20 deg cone at Mach 3 is 0.8 % less (60 cells along)."""
+GROWTH_LAYERS, SHARE_IN_FINEST = 4, 0.5
+"""Layers of cells of each coarser size; a single one where the finest reach across this share of the shock layer."""
 TAIL = 0.05
 """Length by which the cone goes on behind the metre that is measured, m: the exact cone has no base, and the cell that
 holds the rim of one has a pressure between those of cone and base."""
@@ -65,8 +67,12 @@ def run(fine: bool, progress: Progress) -> list[Record]:
 def wall_cell(mach: float, half_angle: float, fine: bool) -> float:
     """Wall cell, m, of a cone of 1 m and `half_angle` rad: a share of its length or of the shock layer at the base."""
     along, across = (80, 8) if fine else (30, 4)
-    layer = math.tan(taylor_maccoll(mach, half_angle).shock_angle) - math.tan(half_angle)
-    return min(1.0 / along, layer / across)
+    return min(1.0 / along, layer(mach, half_angle) / across)
+
+
+def layer(mach: float, half_angle: float) -> float:
+    """Thickness of the air between a cone of `half_angle` rad and its shock, one metre behind the apex, m."""
+    return math.tan(taylor_maccoll(mach, half_angle).shock_angle) - math.tan(half_angle)
 
 
 def cone_records(
@@ -86,8 +92,8 @@ def cone_records(
         extrapolate: whether to solve on doubled cells as well and to add extrapolated values.
         progress, done: see `flowcase.solve_body`.
     """
-    values = measured(half_angle, machs, cell, progress, done)
-    coarse = measured(half_angle, machs, 2.0 * cell, progress, done) if extrapolate else [{} for _ in machs]
+    values = measured(half_angle, machs, cell, False, progress, done)
+    coarse = measured(half_angle, machs, cell, True, progress, done) if extrapolate else [{} for _ in machs]
     records = []
     for mach, own, wide in zip(machs, values, coarse, strict=True):
         records += _of_one(mach, half_angle, own)
@@ -97,17 +103,34 @@ def cone_records(
     return records
 
 
+def mesh_settings(half_angle: float, machs: tuple[float, ...], cell: float, doubled: bool = False) -> MeshSettings:
+    """Mesh for these Mach numbers; `doubled` has cells of twice the size everywhere, by half as many layers of each."""
+    thickest = max(layer(mach, half_angle) for mach in machs)
+    growth = 1 if WALL_LAYERS * cell > SHARE_IN_FINEST * thickest else GROWTH_LAYERS
+    factor = 2 if doubled else 1
+    # The base and what lies behind it have cells of twice the size: nothing of them is measured.
+    return MeshSettings(
+        wall_cell=2.0 * factor * cell,
+        fine_parts=("forebody",),
+        wall_layers=WALL_LAYERS // factor,
+        growth_layers=max(growth // factor, 1),
+        far_field=1.0,
+    )
+
+
 def measured(
-    half_angle: float, machs: tuple[float, ...], cell: float, progress: Progress | None = None, done: float = 0.0
+    half_angle: float,
+    machs: tuple[float, ...],
+    cell: float,
+    doubled: bool = False,
+    progress: Progress | None = None,
+    done: float = 0.0,
 ) -> list[dict[str, float]]:
     """Surface Cp and derivatives per rad on one mesh, by Mach number; those of unconverged conditions are left out."""
     surface = bodies.cone(half_angle, tail=TAIL)
     mach = np.repeat(machs, 3)
     alpha, beta = np.tile([0.0, STEP, 0.0], len(machs)), np.tile([0.0, 0.0, STEP], len(machs))
-    # The base and what lies behind it have cells of twice the size: nothing of them is measured.
-    settings = MeshSettings(
-        wall_cell=2.0 * cell, fine_parts=("forebody",), wall_layers=WALL_LAYERS, growth_layers=1, far_field=1.0
-    )
+    settings = mesh_settings(half_angle, machs, cell, doubled)
     solution = solve_body(surface, settings, FlowConditions(mach, alpha, beta), progress, done)
     area = math.pi * math.tan(half_angle) ** 2
     coefficients = integrate(solution, reference_of(area, 1.0)).sel(part="forebody")
