@@ -21,10 +21,9 @@ CASE = "cones"
 MACHS = (1.5, 3.0, 10.0)
 HALF_ANGLES_DEG = (10.0, 20.0, 30.0)
 STEP = math.radians(1.0)
-WALL_LAYERS = 6
-"""Layers of the finest cells; with three, C_N_alpha of the 20 deg cone at Mach 3 is 0.8 % less (60 cells along)."""
-GROWTH_LAYERS, SHARE_IN_FINEST = 4, 0.5
-"""Layers of cells of each coarser size; a single one where the finest reach across this share of the shock layer."""
+FEWEST_LAYERS, MOST_LAYERS, GROWTH_LAYERS = 6, 10, 4
+"""Layers of the finest cells, which should hold half of the shock layer: where it leaves them C_N_alpha falls by 0.8 %
+(20 deg, Mach 3, 60 cells along). Layers of each coarser size: a single one where the finest hold half of it anyway."""
 TAIL = 0.05
 """Length by which the cone goes on behind the metre that is measured, m: the exact cone has no base, and the cell that
 holds the rim of one has a pressure between those of cone and base."""
@@ -105,14 +104,15 @@ def cone_records(
 
 def mesh_settings(half_angle: float, machs: tuple[float, ...], cell: float, doubled: bool = False) -> MeshSettings:
     """Mesh for these Mach numbers; `doubled` has cells of twice the size everywhere, by half as many layers of each."""
-    thickest = max(layer(mach, half_angle) for mach in machs)
-    growth = 1 if WALL_LAYERS * cell > SHARE_IN_FINEST * thickest else GROWTH_LAYERS
+    half_thickness = 0.5 * max(layer(mach, half_angle) for mach in machs) / cell
+    layers = min(max(math.ceil(half_thickness), FEWEST_LAYERS), MOST_LAYERS)
+    growth = 1 if half_thickness < FEWEST_LAYERS else GROWTH_LAYERS
     factor = 2 if doubled else 1
     # The base and what lies behind it have cells of twice the size: nothing of them is measured.
     return MeshSettings(
         wall_cell=2.0 * factor * cell,
         fine_parts=("forebody",),
-        wall_layers=WALL_LAYERS // factor,
+        wall_layers=layers // factor,
         growth_layers=max(growth // factor, 1),
         far_field=1.0,
     )
