@@ -10,6 +10,7 @@ from typing import Any
 
 DATA = Path(__file__).resolve().parent / "data"
 DEMO = DATA / "demo.json"
+PICTURES = Path(__file__).resolve().parent / "images" / "validation"
 
 
 def table(head: Sequence[str], rows: Sequence[Sequence[object]], align: str = "") -> str:
@@ -34,6 +35,34 @@ def store_validation(path: Path) -> None:
     for case in dict.fromkeys(record["case"] for record in document["records"]):
         own = [record for record in document["records"] if record["case"] == case]
         store(validation_path(case), document | {"records": own})
+        draw_validation(case)
+
+
+def shown_validation(case: str) -> list:
+    """The stored records of a case that its picture shows: of HORUS-2B the clean vehicle's coefficients alone."""
+    from spaceplane.validation import read
+
+    records = read(validation_path(case))
+    return [r for r in records if case != "horus" or (r.unit == "-" and not r.quantity.startswith("d"))]
+
+
+def draw_validation(case: str) -> None:
+    """Draw the stored records of a case into images/validation."""
+    from spaceplane.validation.figures import picture
+
+    PICTURES.mkdir(exist_ok=True)
+    (PICTURES / f"{case}.png").write_bytes(picture(shown_validation(case)))
+
+
+def validation_picture(case: str) -> Callable[[], str]:
+    """The picture of one validation case."""
+
+    def block() -> str:
+        from spaceplane.validation.figures import caption
+
+        return f"![{caption(shown_validation(case))}](images/validation/{case}.png)"
+
+    return block
 
 
 def settings_table(record: type) -> str:
@@ -247,18 +276,15 @@ def increment_settings() -> str:
 
 
 def validation_block(case: str) -> Callable[[], str]:
-    """Table of one validation case as last run on fine meshes."""
+    """Picture and table of one validation case as last run on fine meshes."""
 
     def block() -> str:
-        from spaceplane.validation import markdown_table, read
+        from spaceplane.validation import markdown_table, page, read
 
         records = read(validation_path(case))
-        gating = [record for record in records if record.gate]
-        lead = f"{sum(record.within for record in gating)} of {len(gating)} judged rows lie inside their band.\n\n"
-        notes = dict.fromkeys(record.note for record in records if record.note)
-        sources = "; ".join(dict.fromkeys(record.source for record in records))
-        tail = "".join(f"\n- {note}" for note in notes)
-        return f"{lead}{markdown_table(records)}\nSources: {sources}.\n{tail}"
+        lead = f"{validation_picture(case)()}\n\n{page.judged(records)}\n\n"
+        tail = "".join(f"\n- {note}" for note in page.notes(records))
+        return f"{lead}{markdown_table(records)}\nSources: {page.sources(records)}.\n{tail}"
 
     return block
 
@@ -311,7 +337,8 @@ def trust() -> str:
     cases = ("cones", "sphere", "hb2", "finner", "m6", "horus")
     rows = []
     for case in (case for case in cases if validation_path(case).exists()):
-        records = [record for record in read(validation_path(case)) if record.unit != "m" and record.quantity[0] != "d"]
+        records = [r for r in read(validation_path(case)) if r.unit != "m" and r.quantity[0] != "d"]
+        records = [r for r in records if not r.quantity.endswith((", extrapolated", ", inviscid"))]
         for quantity, kind in dict.fromkeys((record.quantity, record.kind) for record in records):
             own = [record for record in records if (record.quantity, record.kind) == (quantity, kind)]
             gaps = [abs(record.deviation) for record in own if record.deviation is not None]
@@ -444,6 +471,7 @@ BLOCKS: dict[str, Callable[[], str]] = {
     "validation finner": validation_block("finner"),
     "validation m6": validation_block("m6"),
     "validation horus": validation_horus,
+    "validation horus picture": validation_picture("horus"),
     "validation horus lateral": horus_of_unit("1/deg"),
     "moment centre": horus_of_unit("m"),
     "dynamics validation": dynamics_validation,

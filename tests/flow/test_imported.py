@@ -18,6 +18,7 @@ from spaceplane.flow.settings import FlowSettings
 from spaceplane.flow.solution import FlowConditions
 from spaceplane.flow.solve import solve
 from spaceplane.flow.topology import prepare
+from spaceplane.mesh.elements import Elements
 from spaceplane.mesh.imported import build, read_mesh
 from spaceplane.mesh.mesh import Mesh
 from spaceplane.vehicle.properties import ReferenceLengths
@@ -110,8 +111,8 @@ def test_a_free_stream_through_the_plane_of_symmetry_is_refused(tmp_path):
             run_on_mesh(mesh, [2.0], [alpha], [beta], REFERENCE, FlowSettings())
 
 
-def half_sphere(path, side: int = 12, radial: int = 24) -> Mesh:
-    """The half y > 0 of a unit sphere out to 8 radii, in hexahedra, written by meshio as Gmsh's format and read."""
+def half_sphere_elements(side: int = 12, radial: int = 24) -> Elements:
+    """The half y > 0 of a unit sphere out to 8 radii, in hexahedra."""
     points, number = [], []
     for block in structured.sphere_blocks(np.geomspace(1.0, 8.0, radial + 1), side):
         number.append(sum(len(p) for p in points) + np.arange(block[..., 0].size).reshape(block.shape[:3]))
@@ -123,15 +124,32 @@ def half_sphere(path, side: int = 12, radial: int = 24) -> Mesh:
     cells = np.concatenate([body_fitted.hexahedra(unique.reshape(-1)[n]) for n in number])
     cells = cells[every[cells, 1].mean(axis=1) > 0.0]
     used, cells = np.unique(cells, return_inverse=True)
-    every, cells = every[used], cells.reshape(-1, 8)
+    return body_fitted.marked(every[used], {"hexahedron": cells.reshape(-1, 8)}, half_sphere_marker)
 
-    def name(middle: np.ndarray) -> str:
-        if abs(middle[1]) < 1e-9:
-            return "symmetry"
-        return "sphere" if np.linalg.norm(middle) < 1.02 else "farfield"
 
-    elements = body_fitted.marked(every, {"hexahedron": cells}, name)
-    return read_mesh(body_fitted.write_msh(elements, path / "sphere.msh")).mesh
+def half_sphere_marker(middle: np.ndarray) -> str:
+    """Marker of a boundary face of the half sphere by its middle."""
+    if abs(middle[1]) < 1e-9:
+        return "symmetry"
+    return "sphere" if np.linalg.norm(middle) < 1.02 else "farfield"
+
+
+def half_sphere(path) -> Mesh:
+    """The half sphere written by meshio as Gmsh's format and read."""
+    return read_mesh(body_fitted.write_msh(half_sphere_elements(), path / "sphere.msh")).mesh
+
+
+def test_prisms_converge():
+    """Slopes over the face neighbours of prisms alone leave the flow oscillating after one decade."""
+    elements = half_sphere_elements(side=6, radial=12)
+    cells = np.concatenate([elements.cells["hexahedron"][:, part] for part in body_fitted.TWO_WEDGES])
+    prisms = body_fitted.marked(elements.points, {"wedge": cells}, half_sphere_marker)
+    mesh, _ = build(prisms, {"symmetry": "symmetry", "sphere": "wall", "farfield": "far"})
+    half = ReferenceLengths(np.pi / 2, 2.0, 2.0, (0.0, 0.0, 0.0))
+    case = run_on_mesh(mesh, [0.8, 1.5], [0.0], [0.0], half, FlowSettings())
+    for record in case.records:
+        assert record["converged"] and record["residual_drop"] > 2.0
+        assert abs(record["CL"]) < 0.06  # the diagonals have a sense of turning
 
 
 def test_half_a_sphere_is_as_the_whole_from_mach_03_to_10(tmp_path):

@@ -1,12 +1,17 @@
 """Deviation, verdict and the written tables."""
 
+import base64
+import io
 import json
 
 import pytest
+from rich.console import Console
 
 from spaceplane import validation
 from spaceplane.errors import InputError
+from spaceplane.validation import figures
 from spaceplane.validation.records import Record
+from spaceplane.validation.terminal import print_table
 
 
 def record(computed, **changes):
@@ -45,11 +50,42 @@ def test_rows_that_do_not_gate_are_shown_but_not_judged():
 
 def test_write_and_read_back(tmp_path):
     rows = (record(0.203, note="coarse"), record(None))
-    json_path, page_path = validation.write(rows, tmp_path / "new")
-    assert validation.read(json_path) == rows
-    assert json.loads(json_path.read_text())["passed"] is False
-    page = page_path.read_text()
+    files = validation.write(rows, tmp_path / "new")
+    assert validation.read(files["json"]) == rows
+    assert json.loads(files["json"].read_text())["passed"] is False
+    page = files["md"].read_text()
     assert "not converged" in page and "+1.5 %" in page and "coarse" in page
+
+
+def test_page_carries_the_pictures(tmp_path):
+    """Beside the Markdown page as files, inside the HTML page; both say which row is nearest to its edge."""
+    rows = (record(0.203), record(0.7, case="sphere", condition="Mach 5", published=0.5, band=0.1))
+    files = validation.write(rows, tmp_path)
+    page, whole = files["md"].read_text(), files["html"].read_text()
+    for case in ("cones", "sphere"):
+        data = files[case].read_bytes()
+        assert data.startswith(b"\x89PNG") and len(data) > 5000
+        assert f"](validation-{case}.png)" in page
+        assert base64.b64encode(data).decode() in whole
+    assert "surface Cp, Mach 5: +40.0 %, band 10 %" in page and "1 of 2 judged rows" in whole
+
+
+def test_conditions_are_read_as_places():
+    cones = [record(0.2, condition=f"Mach {m:g}, half angle {a:g} deg") for m in (1.5, 3) for a in (10, 20)]
+    found = figures.places(cones)
+    assert (found.name, found.x) == ("half angle, deg", (10, 20, 10, 20))
+    assert found.series == ("Mach 1.5", "Mach 1.5", "Mach 3", "Mach 3")
+    spheres = figures.places([record(0.2, condition=f"Mach {m:g}") for m in (1.5, 3)])
+    assert (spheres.name, spheres.x, set(spheres.series)) == ("Mach", (1.5, 3), {""})
+    words = figures.places([record(0.2, condition=text) for text in ("Boeing 747 lateral", "HORUS-2B")])
+    assert words.labels == ("Boeing 747 lateral", "HORUS-2B")
+
+
+def test_table_on_the_terminal_shows_deviation_and_band():
+    console = Console(file=io.StringIO())
+    print_table([record(0.203), record(0.3)], console)
+    text = console.file.getvalue()
+    assert "+1.5 %" in text and "2 %" in text and "pass" in text and "fail" in text
 
 
 def test_unwritable_folder(tmp_path):

@@ -23,7 +23,7 @@ def validate(
         bool, typer.Option("--coarse", help="Coarse meshes: seconds instead of minutes, wider of the mark.")
     ] = False,
     out: Annotated[
-        Path | None, typer.Option("--out", metavar="DIR", help="Write validation.json and validation.md here.")
+        Path | None, typer.Option("--out", metavar="DIR", help="Write validation.json and the page with pictures here.")
     ] = None,
     json_file: options.JsonFile = None,
 ) -> int:
@@ -40,7 +40,7 @@ def validate(
         validation.write(records, out)
     write_json([as_dict(record) for record in records], json_file)
     if str(json_file) != "-":
-        from spaceplane.report.summary import print_validation
+        from spaceplane.validation.terminal import print_table
 
-        print_validation(records)
+        print_table(records)
     return 0 if validation.passed(records) else 1

@@ -138,9 +138,9 @@ class Steering:
 def converged(history: History, settings: FlowSettings) -> bool:
     """Whether a condition is good on the fine mesh: residual and force window together.
 
-    Either the residual fell by `residual_drop` with forces within twice the tolerance; or, where it falls slowly, by half
-    a decade more than `least_drop` with forces standing over two windows, or by `least_drop` with forces standing over
-    three. A residual that falls fast is let fall: the rest costs little.
+    Either the residual fell by `residual_drop` with forces within twice the tolerance; or, where it falls slowly, by
+    half a decade more than `least_drop` with forces standing over two windows, or by `least_drop` with forces standing
+    over three. A residual that falls fast is let fall: the rest costs little.
     """
     window, tolerance, drop = settings.window, settings.force_tolerance, history.drop()
     length = len(history.residual)

@@ -110,10 +110,12 @@ def least_squares(center: np.ndarray, start: np.ndarray, other: np.ndarray) -> t
     return np.einsum("eij,ej->ei", pseudo[row], d * weight[:, None]), quality
 
 
-def gradient_stencil(center: np.ndarray, start: np.ndarray, other: np.ndarray) -> tuple[np.ndarray, ...]:
-    """(start, other, coefficients): face neighbours; where they span space badly, their neighbours too."""
+def gradient_stencil(
+    center: np.ndarray, start: np.ndarray, other: np.ndarray, few: np.ndarray
+) -> tuple[np.ndarray, ...]:
+    """(start, other, coefficients): face neighbours; where they are `few` [cell] or span space badly, theirs too."""
     weight, quality = least_squares(center, start, other)
-    poor = np.flatnonzero(quality < 0.1)
+    poor = np.flatnonzero((quality < 0.1) | few)
     if not len(poor):
         return start, other, weight
     cells = len(center)
@@ -130,6 +132,19 @@ def gradient_stencil(center: np.ndarray, start: np.ndarray, other: np.ndarray) -
     new_start = np.concatenate([[0], np.cumsum(np.bincount(rows, minlength=cells))])
     new_other = cols[order]
     return new_start, new_other, least_squares(center, new_start, new_other)[0]
+
+
+def few_faces(mesh: Mesh) -> np.ndarray:
+    """[cell] whether an imported element has fewer than six faces; none on octrees, whose cut cells do well with few.
+
+    Slopes from the neighbours of tetrahedra, prisms and pyramids alone never come to rest: F. Haider, J.-P. Croisille,
+    B. Courbet, "Stability analysis of the cell centered finite-volume MUSCL method on unstructured grids", Numer. Math.
+    113 (2009) 555-600, ask for a wider stencil.
+    """
+    if mesh.cell_cube_center is not None:
+        return np.zeros(mesh.cells, dtype=bool)
+    ends = np.concatenate([mesh.face_cells.ravel(), mesh.wall_cell, mesh.far_cell])
+    return np.bincount(ends, minlength=mesh.cells) < 6
 
 
 def color_blocks(cells: int, face_cells: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -196,7 +211,7 @@ def prepare(mesh: Mesh, dtype: type) -> Topology:
     entry_normal = np.concatenate([normal, -normal])[rows]
     entry_area = np.r_[area, area][rows]
     entry_reach = np.concatenate([reach[:, :3], reach[:, 3:]])[rows]
-    stencil_start, stencil_other, weight = gradient_stencil(center, start, other)
+    stencil_start, stencil_other, weight = gradient_stencil(center, start, other, few_faces(mesh)[order])
 
     chunks = max(1, round(cells / CELLS_PER_CHUNK))
     chunk_cells = np.linspace(0, cells, chunks + 1).astype(np.int64)

@@ -6,7 +6,6 @@ import math
 import sys
 from collections.abc import Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from rich import box
 from rich.console import Console
@@ -15,14 +14,13 @@ from rich.text import Text
 
 from spaceplane.report.flight_point import LEVEL_CSS, level_of, time_text, worst_levels
 from spaceplane.report.names import stability
-from spaceplane.report.numbers import MISSING, duration, fixed, grouped, is_number, measured, number
+from spaceplane.report.numbers import duration, fixed, grouped, is_number, measured, number
 from spaceplane.report.plots import eigenvalue_text
 from spaceplane.report.read import level_text
 from spaceplane.report.sections import total_seconds, unconverged, warnings
 
 if TYPE_CHECKING:
     from spaceplane.aero.uncertainty.accuracy import Accuracy, Refined, Trial
-    from spaceplane.validation.records import Record
 
 COLOURS = {"good": "green", "fair": "yellow", "poor": "dark_orange", "bad": "red"}
 COEFFICIENT_ROWS = ("CL", "CD", "L_over_D", "Cm")
@@ -209,31 +207,6 @@ def print_flow(records: Iterable[dict], console: Console | None = None) -> None:
         errors = r.get("coefficient_errors") or {}
         if errors:
             table.add_row("", "", "", *(f"±{fixed(errors.get(name), 5)}" for name in names), "", style="dim")
-    console.print(table)
-
-
-def print_validation(records: Iterable[Record], console: Console | None = None) -> None:
-    """Print published values beside ours."""
-    console = console or _console()
-    table = _table("case")
-    for title in ("quantity", "condition", "published", "ours", "deviation", "verdict"):
-        table.add_column(title, justify="left" if title in ("quantity", "condition") else "right")
-    for r in records:
-        deviation = r.deviation
-        if deviation is None:
-            shown = MISSING
-        else:
-            shown = f"{100 * deviation:+.1f} %" if r.kind == "relative" else f"{deviation:+.4g}"
-        style = {"pass": "green", "fail": "red", "outside": "yellow"}.get(r.verdict, "")
-        table.add_row(
-            r.case,
-            r.quantity,
-            r.condition,
-            number(r.published, 4),
-            number(r.computed, 4),
-            shown,
-            Text(r.verdict, style=style),
-        )
     console.print(table)
 
 

@@ -83,19 +83,22 @@ def revolve(profile: np.ndarray, segments: int, base_from: int | None = None) ->
     return Surface(points, np.concatenate(triangles).astype(np.int64), part, ("forebody", "base"))
 
 
-def cone(half_angle: float, length: float = 1.0, segments: int = 96, base_rings: int = 1) -> Surface:
+def cone(half_angle: float, length: float = 1.0, segments: int = 96, base_rings: int = 1, tail: float = 0.0) -> Surface:
     """A circular cone with a flat base, apex at the origin.
 
     Args:
         half_angle: half angle, rad.
-        length: length along the axis, m.
+        length: length of the part `forebody` along the axis, m.
         segments: facets around the axis.
         base_rings: concentric rings of the base.
+        tail: length by which the cone goes on behind the forebody, m; that piece belongs to the part `base`.
     """
     # Facets of equal area to the circle, so that the normal force on the base area is not short by the inscription.
-    radius = length * math.tan(half_angle) * _equal_area_factor(segments)
-    base = [(length, radius * (1.0 - ring / base_rings)) for ring in range(base_rings + 1)]
-    return revolve(np.array([(0.0, 0.0), *base]), segments, base_from=1)
+    slope = math.tan(half_angle) * _equal_area_factor(segments)
+    end = length + tail
+    base = [(end, end * slope * (1.0 - ring / base_rings)) for ring in range(base_rings + 1)]
+    waist = [(length, length * slope)] if tail > 0.0 else []
+    return revolve(np.array([(0.0, 0.0), *waist, *base]), segments, base_from=1)
 
 
 def sphere(radius: float = 1.0, segments: int = 96) -> Surface:

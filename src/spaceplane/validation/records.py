@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from spaceplane import __version__
-from spaceplane.files import json_text, told, write_text
 from spaceplane.plain import finite
 
 
@@ -83,49 +81,28 @@ def as_dict(record: Record) -> dict:
     return row
 
 
-def markdown_table(records: Sequence[Record]) -> str:
+def table_rows(records: Iterable[Record]) -> list[tuple[str, ...]]:
+    """The head of a table of the records, and a row for each with deviation, band and verdict."""
+    head = ("quantity", "condition", "published", "computed", "deviation", "band", "verdict")
+    return [head, *map(_row, records)]
+
+
+def markdown_table(records: Iterable[Record]) -> str:
     """A Markdown table of the records, one row each, with the deviation and the band."""
-    head = "| quantity | condition | published | computed | deviation | band | verdict |\n"
-    head += "|---|---|---:|---:|---:|---:|---|\n"
-    return head + "".join(_markdown_row(record) for record in records)
+    head, *rows = ("| " + " | ".join(row) + " |\n" for row in table_rows(records))
+    return f"{head}|---|---|---:|---:|---:|---:|---|\n{''.join(rows)}"
 
 
-def markdown_page(records: Sequence[Record]) -> str:
-    """A Markdown page with one section and table for each case, and the sources below each table."""
-    parts = ["# Validation results\n", f"\nspaceplane {__version__}.\n"]
-    for case in dict.fromkeys(record.case for record in records):
-        rows = [record for record in records if record.case == case]
-        gating = [record for record in rows if record.gate]
-        parts.append(f"\n## {case}\n\n")
-        parts.append(f"{sum(r.within for r in gating)} of {len(gating)} gating rows inside their band.\n\n")
-        parts.append(markdown_table(rows))
-        parts.append("\nSources: " + "; ".join(dict.fromkeys(record.source for record in rows)) + ".\n")
-        notes = list(dict.fromkeys(record.note for record in rows if record.note))
-        parts.extend(f"\n- {note}" for note in notes)
-        parts.append("\n" if notes else "")
-    return "".join(parts)
+def shown_deviation(record: Record) -> str:
+    """The deviation as text: in per cent for kind "relative", else in the record's unit; "-" where undefined."""
+    if record.deviation is None:
+        return "-"
+    return f"{100 * record.deviation:+.1f} %" if record.kind == "relative" else f"{record.deviation:+.4g}"
 
 
-def write(records: Sequence[Record], folder: str | Path) -> tuple[Path, Path]:
-    """Write `validation.json` and `validation.md` into the folder, made if missing, and return their paths.
-
-    Raises:
-        InputError: if the folder cannot be written.
-    """
-    folder = Path(folder)
-    document = {
-        "schema": "spaceplane.validation",
-        "schema_version": 1,
-        "version": __version__,
-        "passed": passed(records),
-        "records": [as_dict(record) for record in records],
-    }
-    json_path, page_path = folder / "validation.json", folder / "validation.md"
-    with told(folder):
-        folder.mkdir(parents=True, exist_ok=True)
-        write_text(json_text(document), json_path)
-        write_text(markdown_page(records), page_path)
-    return json_path, page_path
+def shown_band(record: Record) -> str:
+    """The band as text, like `shown_deviation`."""
+    return f"{100 * record.band:.3g} %" if record.kind == "relative" else f"{record.band:.3g}"
 
 
 def read(path: str | Path) -> tuple[Record, ...]:
@@ -135,17 +112,13 @@ def read(path: str | Path) -> tuple[Record, ...]:
     return tuple(Record(**{key: row[key] for key in row if key in fields}) for row in document["records"])
 
 
-def _markdown_row(record: Record) -> str:
-    deviation = record.deviation
-    if record.kind == "relative":
-        shown = "-" if deviation is None else f"{100 * deviation:+.1f} %"
-        band = f"{100 * record.band:.3g} %"
-    else:
-        shown = "-" if deviation is None else f"{deviation:+.4g}"
-        band = f"{record.band:.3g}"
-    computed = "not converged" if record.computed is None else f"{record.computed:.4g}"
-    unit = "" if record.unit == "-" else f", {record.unit}"
+def _row(record: Record) -> tuple[str, ...]:
     return (
-        f"| {record.quantity}{unit} | {record.condition} | {record.published:.5g} | {computed} | {shown} | {band} "
-        f"| {record.verdict} |\n"
+        record.quantity + ("" if record.unit == "-" else f", {record.unit}"),
+        record.condition,
+        f"{record.published:.5g}",
+        "not converged" if record.computed is None else f"{record.computed:.4g}",
+        shown_deviation(record),
+        shown_band(record),
+        record.verdict,
     )
