@@ -96,7 +96,11 @@ def assemble(
         outside = (place[:, 1] < 0) & half
         place = place[~outside]
         leaf = leaves.index[0].at(place)
-        leaf = np.where(leaf >= 0, leaf, leaves.index[1].at(place // 2))  # beside a coarse wall
+        for level in range(1, len(leaves.index)):  # beside a coarse wall
+            missing = leaf < 0
+            if not missing.any():
+                break
+            leaf[missing] = leaves.index[level].at(place[missing] >> level)
         if len(leaf) and leaf.min() < 0:
             raise RuntimeError("a fluid face of a cut cell has no cell beyond it")
         sides[open_side[~outside], side] = first + leaf
