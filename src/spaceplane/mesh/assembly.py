@@ -217,6 +217,8 @@ def finish(
 
     inside = number >= 0
     index = number[inside]
+    added = inside & (a.cube != a.cube[root]).any(axis=1)
+    merged = np.unique(np.column_stack([number[added], a.cube[added], a.size[added]]), axis=0)
     volume = np.bincount(index, a.volume[inside], minlength=n)
     center = np.stack([np.bincount(index, a.volume[inside] * x, minlength=n) for x in a.center[inside].T], axis=1)
     center /= volume[:, None]
@@ -245,6 +247,7 @@ def finish(
         piece_part=walls[5],
         part_names=part_names,
         cell_cube_center=corner + a.cube[order] * cell,
+        merged_cubes=merged * np.repeat([1.0, cell], [1, 4]) + np.concatenate([[0.0], corner, [0.0]]),
     )
     return mesh, number
 

@@ -48,16 +48,33 @@ def split(mesh: Mesh, marked: np.ndarray) -> Sizing:
             grading needs besides.
         marked: [cell] bool.
     """
-    wanted = np.where(marked, 0.5, 1.0) * mesh.cell_size
-    quarter = 0.25 * mesh.cell_size[marked, None, None]
-    corners = np.stack(np.meshgrid(*[[-1.0, 1.0]] * 3, indexing="ij"), axis=-1).reshape(1, 8, 3)
-    children = (mesh.cell_cube_center[marked][:, None] + quarter * corners).reshape(-1, 3)
-    # a cell may be larger than its cube: small cut cells were merged with it, and its wall lies in theirs
-    cell = mesh.wall_cell[mesh.piece_wall]
-    wall = marked[cell]
+    owner, center, size = octree_cubes(mesh)
+    wanted = np.where(marked[owner], np.minimum(size, 0.5 * mesh.cell_size[owner]), size)
+    halved = wanted < 0.75 * size
+    corners = np.stack(np.meshgrid(*[[-0.25, 0.25]] * 3, indexing="ij"), axis=-1).reshape(1, 8, 3)
+    children = (center[halved][:, None] + corners * size[halved, None, None]).reshape(-1, 3)
     return Sizing(
-        np.concatenate([mesh.cell_cube_center[~marked], children, mesh.piece_center[wall]]),
-        np.concatenate([wanted[~marked], np.repeat(wanted[marked], 8), wanted[cell[wall]]]),
+        np.concatenate([center[~halved], children]),
+        np.concatenate([wanted[~halved], np.repeat(wanted[halved], 8)]),
+    )
+
+
+def octree_cubes(mesh: Mesh) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Cell, centre [cube, xyz], m, and edge, m, of the octree cubes that the cells lie in.
+
+    Raises:
+        InputError: a mesh that is no octree's.
+    """
+    if mesh.cell_cube_center is None:
+        raise InputError("mesh: an imported mesh has no octree to refine")
+    cell, center, size = np.arange(mesh.cells), mesh.cell_cube_center, mesh.cell_size
+    if mesh.merged_cubes is None:
+        return cell, center, size
+    more = mesh.merged_cubes
+    return (
+        np.concatenate([cell, more[:, 0].astype(np.int64)]),
+        np.concatenate([center, more[:, 1:4]]),
+        np.concatenate([size, more[:, 4]]),
     )
 
 
