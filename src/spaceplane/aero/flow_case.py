@@ -14,11 +14,11 @@ from spaceplane.aero.increments.settings import Air, IncrementSettings
 from spaceplane.aero.integrate import BY_SOURCE, COEFFICIENTS, PRESSURES, TOTAL, Reference
 from spaceplane.environment.atmosphere import Ambient
 from spaceplane.errors import InputError
+from spaceplane.flow.adapt import solve_adapted
 from spaceplane.flow.freestream import velocity
 from spaceplane.flow.settings import FlowSettings
 from spaceplane.flow.solution import FlowConditions, Solution
 from spaceplane.flow.solve import solve
-from spaceplane.mesh.generate import generate
 from spaceplane.mesh.mesh import Mesh
 from spaceplane.mesh.settings import MeshSettings
 from spaceplane.plain import degrees, finite
@@ -60,6 +60,7 @@ def run_flow(
     rates: tuple[float, float, float] = (0.0, 0.0, 0.0),
     increments: IncrementSettings | None = None,
     ambient: Ambient | None = None,
+    adapt: int = 0,
 ) -> FlowCase:
     """Mesh a body and solve every combination of Mach number, angle of attack and sideslip in one ensemble.
 
@@ -76,17 +77,16 @@ def run_flow(
             in m/s, 1/m.
         increments: viscous increments; none when None.
         ambient: undisturbed air of every condition, for skin friction.
+        adapt: passes that adapt the mesh to the flow, see `solve_adapted`.
 
     Raises:
-        InputError: a bad condition or body, rates that move some point of the body at more than half the flight
-            speed, or skin friction without air.
+        InputError: a bad condition or body, adaptation without a number of cells, rates that move some point of the
+            body at more than half the flight speed, or skin friction without air.
     """
     conditions = _turning(product(list(machs), list(alphas), list(betas)), rates, reference, body.points)
     viscous = _viscous(increments, ambient, len(conditions))
-    if progress:
-        progress("mesh", 0, 1, "")
-    mesh = generate(body, mesh_settings, progress)
-    return _solved(mesh, conditions, reference, flow_settings, progress, *viscous)
+    solution = solve_adapted(body, mesh_settings, conditions, flow_settings, adapt, progress)
+    return _told(solution, reference, *viscous)
 
 
 def run_on_mesh(
@@ -121,7 +121,7 @@ def run_on_mesh(
         raise InputError(f"rates: {rates}, not allowed on a mesh with planes of symmetry")
     _require_along_symmetry(mesh, conditions)
     viscous = _viscous(increments, ambient, len(conditions))
-    return _solved(mesh, conditions, reference, flow_settings, progress, *viscous)
+    return _told(solve(mesh, conditions, flow_settings, progress), reference, *viscous)
 
 
 def _turning(
@@ -147,18 +147,9 @@ def _viscous(
     return increments, None if ambient is None else Air.of([ambient] * count)
 
 
-def _solved(
-    mesh: Mesh,
-    conditions: FlowConditions,
-    reference: Reference,
-    flow_settings: FlowSettings,
-    progress: Progress | None,
-    increments: IncrementSettings,
-    air: Air | None,
-) -> FlowCase:
-    solution = solve(mesh, conditions, flow_settings, progress)
+def _told(solution: Solution, reference: Reference, increments: IncrementSettings, air: Air | None) -> FlowCase:
     coefficients = integrate_with(solution, reference, increments, air)
-    return FlowCase(records(solution, coefficients), coefficients, mesh, solution)
+    return FlowCase(records(solution, coefficients), coefficients, solution.mesh, solution)
 
 
 def _require_along_symmetry(mesh: Mesh, conditions: FlowConditions) -> None:

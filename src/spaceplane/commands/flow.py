@@ -69,6 +69,7 @@ def flow(
     ] = "0,0,0",
     cell: options.Cell = None,
     cells: options.Cells = None,
+    adapt: options.Adapt = "0",
     domain: Annotated[
         str | None,
         typer.Option("--domain", metavar="x,y,z,x,y,z", help="Lower and upper corner of the air to mesh, metres."),
@@ -126,7 +127,7 @@ def flow(
     increments = options.increment_settings(friction, base, wall_temperature, emissivity, transition_reynolds)
     ambient = _ambient(altitude, friction, any(turning))
     roles = {"wall": wall, "far": far, "symmetry": symmetry}
-    mesh_options = {"--cell": cell, "--cells": cells, "--domain": domain}
+    mesh_options = {"--cell": cell, "--cells": cells, "--domain": domain, "--adapt": None if adapt == "0" else adapt}
     if mesh_file is None:
         _check_body(body, roles)
     else:
@@ -154,6 +155,7 @@ def flow(
     mesh = options.mesh_settings(cell, cells, default)
     settings = replace(FlowSettings(), precision=solver_precision)
     on_sound = tuple(rate / ambient.speed_of_sound for rate in turning)
+    passes = options.adapt_passes(adapt, mesh)
     extra = {"rates": on_sound, "increments": increments, "ambient": ambient}
     imported: Imported | None = None
     if mesh_file is None:
@@ -162,9 +164,9 @@ def flow(
         surface = read_stl(body)
         from spaceplane.aero.flow_case import run_flow  # the numerical stack: after all that can be refused without it
 
-        with progress_bar() as tell:
+        with progress_bar(1 + passes) as tell:
             tell("mesh", 0, 1, "")
-            case = run_flow(surface, machs, alphas, betas, reference, mesh, settings, tell, **extra)
+            case = run_flow(surface, machs, alphas, betas, reference, mesh, settings, tell, **extra, adapt=passes)
     else:
         from spaceplane.mesh.imported import read_mesh
 

@@ -12,28 +12,17 @@ from spaceplane.flow.solution import FlowConditions, Solution
 from spaceplane.flow.solve import solve
 from spaceplane.mesh.generate import generate
 from spaceplane.mesh.mesh import Mesh
-from spaceplane.mesh.settings import MeshSettings
+from spaceplane.mesh.settings import MeshSettings, check_passes
 from spaceplane.mesh.sizing import split
 from spaceplane.progress import Progress, silent
 from spaceplane.vehicle.surface import Surface
 
-MOST_PASSES = 3
 GROWTH, LARGEST_GROWTH = 2.5, 10.0
 """Cells of each mesh on those of the one before, and at most of the last on the first."""
+LEAST_CELLS = 8000
+"""Cells that the first mesh has at least, where the target has twice as many: a coarser one sees too little."""
 TRIES, CLOSE = 5, 0.07
 """Meshes tried to meet a number of cells, and how close to it, in its logarithm, will do."""
-
-
-def check_passes(passes: int, settings: MeshSettings, field: str = "adapt") -> None:
-    """Refuse a number of passes that is not allowed, and passes without a number of cells to aim at.
-
-    Raises:
-        InputError: naming `field`.
-    """
-    if not (isinstance(passes, int) and 0 <= passes <= MOST_PASSES):
-        raise InputError(f"{field}: {passes}, allowed 0 to {MOST_PASSES}")
-    if passes and settings.target_cells is None:
-        raise InputError(f"{field}: {passes}, needs the number of cells that the last mesh shall have (target_cells)")
 
 
 def solve_adapted(
@@ -58,18 +47,19 @@ def solve_adapted(
         progress: called with (phase, done, total, text).
 
     Returns:
-        The last solution. Its statistics tell the cells of every mesh under "adaptation".
+        The last solution. Its statistics tell the cells of every mesh under "adaptation", and the seconds of all.
 
     Raises:
         InputError: as `generate` and `solve`, or passes that are not allowed.
     """
-    check_passes(passes, mesh_settings)
+    if check_passes("adapt", passes) and mesh_settings.target_cells is None:
+        raise InputError(f"adapt: {passes}, needs target_cells, the number of cells of the last mesh")
     settings, say = flow_settings or FlowSettings(), progress or silent
     if not passes:
         say("mesh", 0, 1, "")
         return solve(generate(surface, mesh_settings, progress), conditions, settings, progress)
     budget = mesh_settings.target_cells
-    start = min(GROWTH**passes, LARGEST_GROWTH)
+    start = min(GROWTH**passes, LARGEST_GROWTH, max(budget / LEAST_CELLS, 2.0))
     loose = replace(mesh_settings, wall_layers=1, growth_layers=1, target_cells=max(1000, round(budget / start)))
     say("mesh", 0, 1, "")
     mesh = generate(surface, loose, progress)
@@ -79,17 +69,19 @@ def solve_adapted(
         residual_drop=min(settings.residual_drop, 2.0),
         force_tolerance=max(settings.force_tolerance, 2e-3),
     )
-    cells = [mesh.cells]
+    cells, seconds = [mesh.cells], 0.0
     for number in range(1, passes + 1):
         phase = f"adapt {number}/{passes}"
         solution = solve(mesh, conditions, rough, _under(say, phase))
+        seconds += solution.statistics["seconds"]
         say(f"{phase}: mesh", 0, 1, "")
         mesh = refined_mesh(surface, fixed, solution, budget / start ** (1.0 - number / passes), progress)
         cells.append(mesh.cells)
     if abs(mesh.cells - budget) > 0.15 * budget:
         mesh.record["warnings"].append(f"target_cells: {budget} asked, {mesh.cells} reached in {passes} passes")
     solution = solve(mesh, conditions, settings, progress)
-    return replace(solution, statistics={**solution.statistics, "adaptation": cells})
+    seconds += solution.statistics["seconds"]
+    return replace(solution, statistics={**solution.statistics, "seconds": seconds, "adaptation": cells})
 
 
 def refined_mesh(

@@ -7,6 +7,20 @@ from dataclasses import dataclass
 
 from spaceplane.errors import InputError
 
+MOST_PASSES = 3
+"""Times that a mesh may be adapted to the flow; each halves some cells."""
+
+
+def check_passes(field: str, passes: int) -> int:
+    """The number of passes that adapt a mesh, when it is allowed.
+
+    Raises:
+        InputError: naming `field`.
+    """
+    if isinstance(passes, bool) or not isinstance(passes, int) or not 0 <= passes <= MOST_PASSES:
+        raise InputError(f"{field}: {passes}, a whole number from 0 to {MOST_PASSES} is allowed")
+    return passes
+
 
 @dataclass(frozen=True)
 class RefinementBox:
