@@ -5,7 +5,7 @@ import pytest
 
 from spaceplane.errors import InputError
 from spaceplane.mesh.generate import generate
-from spaceplane.mesh.settings import MeshSettings
+from spaceplane.mesh.settings import MeshSettings, RefinementBox
 from spaceplane.mesh.sizing import Sizing, split
 
 from . import bodies
@@ -74,6 +74,18 @@ def test_a_point_in_the_air_is_graded_for():
     point = np.array([[2.31, 0.57, 0.43]])
     mesh = generate(bodies.sphere(), settings, sizing=Sizing(point, np.array([0.1])))
     assert largest_at(mesh, point) == pytest.approx(0.1)
+    check_body(mesh, bodies.sphere())
+    check_shape(mesh)
+
+
+def test_a_box_refines_the_wall_inside_it():
+    box = RefinementBox((-1.3, -0.4, -0.4), (-0.7, 0.4, 0.4), 0.05)
+    mesh = generate(bodies.sphere(), MeshSettings(wall_cell=0.2, far_field=1.5, boxes=(box,)))
+    wall = mesh.cell_cube_center[mesh.wall_cell]
+    inside = ((wall > box.lower) & (wall < box.upper)).all(axis=1)
+    size = mesh.cell_size[mesh.wall_cell]
+    assert np.allclose(size[inside], 0.05) and inside.sum() > 100
+    assert np.isclose(size, 0.2).sum() > 100
     check_body(mesh, bodies.sphere())
     check_shape(mesh)
 

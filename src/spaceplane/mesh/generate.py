@@ -156,7 +156,7 @@ def _generate(surface: Surface, settings: MeshSettings, half: bool, sizing: Sizi
     clock = time.perf_counter
     begin = clock()
     grid = place_grid(surface, settings, half)
-    finer = finer_levels(sizing, grid.cell)
+    finer = finer_levels(sizing, settings.boxes, grid.cell)
     grid = refined(grid, finer)
     expected = 3.0 * surface.area / grid.wall_cell**2
     if expected > settings.max_cells:

@@ -54,7 +54,7 @@ class MeshSettings:
             `elevon_right`.
         fine_edges: half-sized cells also where the wall turns by more than about 50 degrees within a wall cell: leading
             and trailing edges, tips, plates thinner than a cell.
-        boxes: refinement boxes; mirrored on a body meshed as half and mirror image.
+        boxes: refinement boxes, for air and walls; mirrored on a body meshed as half and mirror image.
         symmetric: mirror the mesh of the right half; None finds out whether the surface is symmetric about y = 0, False
             meshes both sides even then.
         offset: (x, z) position of the body's lower corner within a wall cell, as a fraction of the cell.

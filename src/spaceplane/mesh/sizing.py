@@ -11,6 +11,7 @@ from spaceplane.errors import InputError
 from spaceplane.mesh.grid import Grid
 from spaceplane.mesh.mesh import Mesh
 from spaceplane.mesh.octree import Window, window_of
+from spaceplane.mesh.settings import RefinementBox
 
 MOST_FINER = 5
 """Levels that a sizing may add below the wall cell of the settings."""
@@ -78,19 +79,19 @@ def octree_cubes(mesh: Mesh) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     )
 
 
-def finer_levels(sizing: Sizing | None, cell: float) -> int:
-    """How many levels below cells of `cell`, m, a sizing needs.
+def finer_levels(sizing: Sizing | None, boxes: tuple[RefinementBox, ...], cell: float) -> int:
+    """How many levels below cells of `cell`, m, a sizing and boxes need.
 
     Raises:
         InputError: more than `MOST_FINER`.
     """
-    if sizing is None or not len(sizing.cell):
-        return 0
-    finer = max(0, math.ceil(math.log2(cell / float(np.min(sizing.cell))) - 1e-6))
+    smallest = min([box.cell for box in boxes], default=cell)
+    if sizing is not None and len(sizing.cell):
+        smallest = min(smallest, float(np.min(sizing.cell)))
+    finer = max(0, math.ceil(math.log2(cell / smallest) - 1e-6))
     if finer > MOST_FINER:
         raise InputError(
-            f"sizing: {np.min(sizing.cell):.3g} m lies {finer} levels below the cell of {cell:.3g} m, "
-            f"at most {MOST_FINER} allowed"
+            f"sizing: {smallest:.3g} m lies {finer} levels below the cell of {cell:.3g} m, at most {MOST_FINER} allowed"
         )
     return finer
 
