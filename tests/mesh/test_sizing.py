@@ -6,7 +6,7 @@ import pytest
 from spaceplane.errors import InputError
 from spaceplane.mesh.generate import generate
 from spaceplane.mesh.settings import MeshSettings, RefinementBox
-from spaceplane.mesh.sizing import Sizing, split
+from spaceplane.mesh.sizing import Sizing, round_edges, split
 
 from . import bodies
 from .test_generate import check_body, check_shape
@@ -96,6 +96,22 @@ def test_marks_on_one_side_split_both():
     finer = generate(bodies.sphere(), MeshSettings(wall_cell=0.3, far_field=1.5), sizing=split(mesh, one))
     small = finer.cell_size < 0.2
     assert small.any() and (finer.cell_center[small, 1] > 0).sum() == (finer.cell_center[small, 1] < 0).sum()
+
+
+def test_edges_of_thin_wings_get_smaller_cells():
+    """A wing within one layer of cells: air connects its sides at the edges only, and there cells are halved."""
+    wing = bodies.diamond_wing(5.0, 6.0, 0.4)
+    settings = {"wall_cell": 0.8, "far_field": 1.5, "symmetric": False, "offset": (0.382, 0.5)}
+    plain = generate(wing, MeshSettings(**settings))
+    rim = round_edges(plain)
+    low, high = wing.bounds
+    away = np.minimum(plain.cell_center - low, high - plain.cell_center)[:, :2].min(axis=1)
+    assert rim.sum() > 20 and away[rim].max() < 0.8
+    mesh = generate(wing, MeshSettings(**settings, edge_levels=2))
+    assert plain.cells < mesh.cells < 2 * plain.cells
+    assert round_edges(mesh).sum() < rim.sum() or mesh.cell_size[round_edges(mesh)].max() < 0.5
+    check_body(mesh, wing)
+    check_shape(mesh)
 
 
 def test_thin_walls_are_judged_by_their_own_cells():

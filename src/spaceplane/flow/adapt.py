@@ -35,8 +35,8 @@ def solve_adapted(
 ) -> Solution:
     """Solve on a coarse mesh, split the cells with the largest errors, and again; all conditions share each mesh.
 
-    The first mesh has one layer of cells of each size; what more the flow needs, the passes add. The numbers of cells
-    form a geometric sequence up to the target.
+    The first mesh has one layer of cells of each size and no finer edges; what more the flow needs, the passes add. The
+    numbers of cells form a geometric sequence up to the target.
 
     Args:
         surface: closed surface, m.
@@ -60,7 +60,9 @@ def solve_adapted(
         return solve(generate(surface, mesh_settings, progress), conditions, settings, progress)
     budget = mesh_settings.target_cells
     start = min(GROWTH**passes, LARGEST_GROWTH, max(budget / LEAST_CELLS, 2.0))
-    loose = replace(mesh_settings, wall_layers=1, growth_layers=1, target_cells=max(1000, round(budget / start)))
+    loose = replace(
+        mesh_settings, wall_layers=1, growth_layers=1, edge_levels=0, target_cells=max(1000, round(budget / start))
+    )
     say("mesh", 0, 1, "")
     mesh = generate(surface, loose, progress)
     fixed = replace(loose, target_cells=None, wall_cell=mesh.record["wall_cell_m"])

@@ -247,6 +247,7 @@ def finish(
         piece_part=walls[5],
         part_names=part_names,
         cell_cube_center=corner + a.cube[order] * cell,
+        wall_wetted=walls[6] * cell**2,
         merged_cubes=merged * np.repeat([1.0, cell], [1, 4]) + np.concatenate([[0.0], corner, [0.0]]),
     )
     return mesh, number
@@ -256,7 +257,7 @@ def _walls(a: Assembly, cell: np.ndarray, kept: np.ndarray, parts: int):
     """Wall faces and their pieces from the surface polygons.
 
     Returns:
-        wall cell, wall centre, piece wall, piece area vector, piece centre, piece part.
+        wall cell, wall centre, piece wall, piece area vector, piece centre, piece part, wetted area of the wall.
     """
     cell = cell[kept]
     key = (cell * parts + a.polygon_part[kept]) * 2 + a.polygon_upstream[kept]
@@ -284,4 +285,5 @@ def _walls(a: Assembly, cell: np.ndarray, kept: np.ndarray, parts: int):
         area,
         center,
         part.astype(np.int32),
+        wall_sums[:, 3],
     )

@@ -16,6 +16,8 @@ from spaceplane.vehicle.surface import Surface
 # A part is called thin when more than this share of the grid lines through it leave it within two cells; below that it
 # is the rim near a sharp edge, which every wing has.
 THIN_SHARE = 0.25
+# Measured at a wall cell of 0.25 m against 0.11 and 0.08 m, see docs/method.md.
+THIN_COST = "HORUS-2B so meshed has 3 % (Mach 2.5) to 10 % (Mach 0.8) less lift slope"
 
 
 def describe(
@@ -131,6 +133,6 @@ def thin_warnings(cut: CutCells, shift: np.ndarray, surface: Surface, grid: Grid
         warnings.append(
             f"{surface.part_names[k]}: wall thinner than two cells over {len(here) / examined[k]:.0%} of it, "
             f"for example {typical[3] * grid.cell:.3g} m at x={x:.3f} y={y:.3f} z={z:.3f} m "
-            f"(wall cell {cells[middle]:.3g} m)"
+            f"(wall cell {cells[middle]:.3g} m); {THIN_COST}"
         )
     return warnings

@@ -17,7 +17,7 @@ from spaceplane.mesh.cutcells import CutCells, cut_cells
 from spaceplane.mesh.grid import Grid, boxes_in_cells, place_grid, refined
 from spaceplane.mesh.mesh import Mesh
 from spaceplane.mesh.settings import MeshSettings
-from spaceplane.mesh.sizing import Sizing, finer_levels, split_cells
+from spaceplane.mesh.sizing import Sizing, finer_levels, round_edges, split, split_cells
 from spaceplane.mesh.symmetry import is_symmetric, mirrored_parts
 from spaceplane.mesh.walls import fine_parts, fine_walls, join_coarse_walls, wall_sizes
 from spaceplane.progress import Progress, silent
@@ -56,7 +56,7 @@ def generate(
     fine_parts(surface.part_names, settings)
     compile_kernels(progress)
     if settings.target_cells is None:
-        return _generate(surface, settings, _symmetric(surface, settings), sizing)
+        return _with_edges(surface, settings, _symmetric(surface, settings), sizing)
     if sizing is not None:
         raise InputError(f"target_cells: {settings.target_cells}, must be None with a sizing")
     return _meet_target(surface, settings)
@@ -110,7 +110,7 @@ def _meet_target(surface: Surface, settings: MeshSettings) -> Mesh:
     slope = -1.7
     best = previous = None
     for _ in range(10):
-        mesh = _generate(surface, dataclasses.replace(settings, wall_cell=math.exp(trial), target_cells=None), half)
+        mesh = _with_edges(surface, dataclasses.replace(settings, wall_cell=math.exp(trial), target_cells=None), half)
         miss = math.log(mesh.cells) - goal
         if best is None or abs(miss) < abs(best[0]):
             best = (miss, mesh)
@@ -151,6 +151,17 @@ def _cut(surface: Surface, grid: Grid, thin: float) -> tuple[CutCells, np.ndarra
     return cut, lowest
 
 
+def _with_edges(surface: Surface, settings: MeshSettings, half: bool, sizing: Sizing | None = None) -> Mesh:
+    """Mesh with the given wall cell, cells at the edges of thin walls halved as often as the settings ask for."""
+    mesh = _generate(surface, settings, half, sizing)
+    for _ in range(settings.edge_levels):
+        edges = round_edges(mesh)
+        if not edges.any():
+            break
+        mesh = _generate(surface, settings, half, split(mesh, edges))
+    return mesh
+
+
 def _generate(surface: Surface, settings: MeshSettings, half: bool, sizing: Sizing | None = None) -> Mesh:
     """Mesh with the given wall cell."""
     clock = time.perf_counter
@@ -174,15 +185,15 @@ def _generate(surface: Surface, settings: MeshSettings, half: bool, sizing: Sizi
         raise InputError("domain: the body is larger than the domain")
     fine = fine_walls(octree.ancestors(window, finer), finer, cut, shift, surface, settings)
     layers = (settings.wall_layers, settings.growth_layers)
-    split, blocks = octree.refined_levels(
+    refined_cells, blocks = octree.refined_levels(
         window, fine, finer, grid.size, grid.levels, *layers, boxes_in_cells(settings, grid), split_cells(sizing, grid)
     )
-    expected = octree.count_leaves(split) * (2 if half else 1)
+    expected = octree.count_leaves(refined_cells) * (2 if half else 1)
     if expected > settings.max_cells:
         raise InputError(
             f"wall_cell: {grid.wall_cell:.6g} m gives {expected} cells, at most {settings.max_cells} allowed"
         )
-    leaves = octree.build_leaves(split, octree.Window(shift, cut.fluid))
+    leaves = octree.build_leaves(refined_cells, octree.Window(shift, cut.fluid))
     octree_done = clock()
 
     # in wall cells the leaves' volumes are integers and their sum exact

@@ -22,6 +22,10 @@ def check_passes(field: str, passes: int) -> int:
     return passes
 
 
+MOST_EDGE_LEVELS = 4
+"""Times that cells at edges may be halved."""
+
+
 @dataclass(frozen=True)
 class RefinementBox:
     """An axis-aligned box in which cells are no larger than `cell`.
@@ -54,6 +58,8 @@ class MeshSettings:
             `elevon_right`.
         fine_edges: half-sized cells also where the wall turns by more than about 50 degrees within a wall cell: leading
             and trailing edges, tips, plates thinner than a cell.
+        edge_levels: how many times cells are halved where air connects the two sides of a thin wall round its edge
+            within a cell (the wall turns by more than 120 degrees there): one pressure acts on both sides.
         boxes: refinement boxes, for air and walls; mirrored on a body meshed as half and mirror image.
         symmetric: mirror the mesh of the right half; None finds out whether the surface is symmetric about y = 0, False
             meshes both sides even then.
@@ -70,6 +76,7 @@ class MeshSettings:
     merge_fraction: float = 0.3
     fine_parts: tuple[str, ...] = ()
     fine_edges: bool = False
+    edge_levels: int = 0
     boxes: tuple[RefinementBox, ...] = ()
     symmetric: bool | None = None
     offset: tuple[float, float] = (0.38196601125, 0.2360679775)
@@ -95,6 +102,8 @@ class MeshSettings:
         for name in ("wall_layers", "growth_layers"):
             if getattr(self, name) < 1:
                 raise InputError(f"{name}: {getattr(self, name)}, must be at least 1")
+        if not 0 <= self.edge_levels <= MOST_EDGE_LEVELS:
+            raise InputError(f"edge_levels: {self.edge_levels}, allowed 0 to {MOST_EDGE_LEVELS}")
         if not 0.0 <= self.merge_fraction <= 0.9:
             raise InputError(f"merge_fraction: {self.merge_fraction}, allowed 0 to 0.9")
         if self.domain is not None and not all(low < high for low, high in zip(*self.domain, strict=True)):

@@ -15,6 +15,8 @@ from spaceplane.mesh.settings import RefinementBox
 
 MOST_FINER = 5
 """Levels that a sizing may add below the wall cell of the settings."""
+# Length of a wall's area vector on its wetted area: cos(120 deg / 2).
+SHARP = 0.5
 
 
 @dataclass(frozen=True)
@@ -58,6 +60,16 @@ def split(mesh: Mesh, marked: np.ndarray) -> Sizing:
         np.concatenate([center[~halved], children]),
         np.concatenate([wanted[~halved], np.repeat(wanted[halved], 8)]),
     )
+
+
+def round_edges(mesh: Mesh) -> np.ndarray:
+    """[cell] whether air connects the two sides of a thin wall round its edge within the cell.
+
+    The wall in such a cell turns by more than 120 degrees. Both sides of a wing have one pressure there: no lift.
+    """
+    found = np.zeros(mesh.cells, bool)
+    found[mesh.wall_cell] = np.linalg.norm(mesh.wall_area, axis=1) < SHARP * mesh.wall_wetted
+    return found
 
 
 def octree_cubes(mesh: Mesh) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
