@@ -301,6 +301,7 @@ def test_unwritable_flow_output(capfd, tmp_path, option, name):
         ("--precision", "half"), ("--vtu", "field.txt"), ("--uncertainty", "grid"), ("--uncertainty", ""),
         ("--accuracy", ""), ("--accuracy", "fine"), ("--accuracy", "%"), ("--accuracy", "0"), ("--accuracy", "-1%"),
         ("--accuracy", "0.001%"), ("--accuracy", "90%"), ("--accuracy", "1"), ("--accuracy", "nan"),
+        ("--adapt", "4"), ("--adapt", "0.5"),
     ],
 )  # fmt: skip
 def test_bad_flow_options(capfd, tmp_path, option, text):
@@ -596,6 +597,8 @@ def test_local_inclination_from_the_command_line(capfd, tmp_path):
         (("--method", "newtonian", "--mach", "1.5,3"), "mach = 1.5"),
         (("--method", "newtonian", "--cell", "0.1"), "--cell: 0.1"),
         (("--method", "tangent", "--cells", "1000"), "--cells: 1000"),
+        (("--method", "tangent", "--adapt", "1"), "--adapt: 1"),
+        (("--cell", "0.1", "--adapt", "1"), "--adapt: 1, goes with --cells"),
         (("--method", "tangent", "--domain", "0,0,0,1,1,1"), "--domain"),
         (("--method", "tangent", "--vtu", "a.vtu"), "--vtu"),
         (("--method", "tangent", "--vtp", "a.vtp"), "--vtp"),
@@ -654,6 +657,7 @@ def test_flow_on_a_mesh(capfd, tmp_path, ending):
         (["--far", "farfield,cone"], "--wall: the mesh has no wall"),
         (["--cell", "0.1"], "--cell: 0.1, not allowed with --mesh"),
         (["--cells", "1000"], "--cells: 1000, not allowed with --mesh"),
+        (["--adapt", "1"], "--adapt: 1, not allowed with --mesh"),
         (["--domain", "0,0,0,1,1,1"], "--domain"),
         (["--accuracy", "1%"], "--accuracy: 1%, not allowed with --mesh"),
         (["--uncertainty", "mesh"], "--uncertainty: mesh, not allowed with --mesh"),
@@ -664,7 +668,7 @@ def test_flow_on_a_mesh(capfd, tmp_path, ending):
 def test_bad_options_of_a_mesh(capfd, tmp_path, monkeypatch, options, naming):
     from spaceplane.aero import flow_case
 
-    monkeypatch.setattr(flow_case, "_solved", lambda *arguments: 1 / 0)
+    monkeypatch.setattr(flow_case, "solve", lambda *arguments: 1 / 0)
     mesh = cone_mesh(tmp_path / "cone.su2")
     if naming is None:
         with pytest.raises(ZeroDivisionError):
@@ -699,6 +703,13 @@ def test_an_unconverged_condition_is_exit_code_1(capfd, tmp_path, monkeypatch):
     code, _, err = run(capfd, "flow", wedge(tmp_path / "w.stl"), "--mach", 2, *FLOW, "--cell", 0.25)
     assert code == 1
     assert "not good: Mach 2, alpha 0 deg, beta 0 deg: oscillating: forces wander" in err
+
+
+def test_adapted_flow_from_the_command_line(capfd, tmp_path):
+    body, options = wedge(tmp_path / "w.stl"), ("--cells", "6k", "--adapt", 1, "--json", "-")
+    code, out, err = run(capfd, "flow", body, "--mach", 2, *FLOW, *options)
+    assert code == 0, err
+    assert json.loads(out)[0]["cells"] == pytest.approx(6000, rel=0.15)
 
 
 def test_interrupt_from_outside_is_one_line_and_130(tmp_path):

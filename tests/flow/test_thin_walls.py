@@ -18,9 +18,9 @@ WINGS = {
 }
 
 
-def planform_and_lift(surface, cell):
+def planform_and_lift(surface, cell, **mesh_settings):
     """m2, and normal-force coefficient at Mach 2, 5 deg."""
-    mesh = generate(surface, MeshSettings(wall_cell=cell, far_field=1.5))
+    mesh = generate(surface, MeshSettings(wall_cell=cell, far_field=1.5, **mesh_settings))
     alpha = np.radians([5.0])
     solution = solve(mesh, FlowConditions(np.array([2.0]), alpha, 0 * alpha))
     # The blunt trailing edge of the resolved plate sheds vortices: a mean that wanders by half a per cent will do.
@@ -39,3 +39,15 @@ def test_a_wing_as_thin_as_a_cell_keeps_planform_and_lift(name, cells):
     assert fine_planform == pytest.approx(CHORD * SPAN, rel=1e-10)
     assert lift == pytest.approx(fine_lift, rel=0.05)
     assert 0.6 < fine_lift / (4.0 * np.radians(5.0) / np.sqrt(3.0)) < 1.0
+
+
+def test_a_wing_inside_one_layer_of_cells_keeps_its_lift_with_finer_edges():
+    """Half a cell thick and between two planes of the grid: cells at its edges, two of six along the chord, have one
+    pressure above and below. Halved twice they give the lift back."""
+    inside = {"symmetric": False, "offset": (0.382, 0.5)}
+    _, fine = planform_and_lift(WINGS["diamond"], 0.25 * THICKNESS)
+    _, lost = planform_and_lift(WINGS["diamond"], 2.0 * THICKNESS, **inside)
+    planform, kept = planform_and_lift(WINGS["diamond"], 2.0 * THICKNESS, **inside, edge_levels=2)
+    assert planform == pytest.approx(CHORD * SPAN, rel=1e-10)
+    assert lost < 0.75 * fine
+    assert kept == pytest.approx(fine, rel=0.05)

@@ -18,6 +18,7 @@ from spaceplane.aero.uncertainty.errors import error_record, of_coefficients
 from spaceplane.aero.uncertainty.settings import ITERATION, MESH
 from spaceplane.environment.atmosphere import Ambient
 from spaceplane.errors import InputError
+from spaceplane.flow.adapt import solve_adapted
 from spaceplane.flow.freestream import velocity
 from spaceplane.flow.settings import FlowSettings
 from spaceplane.flow.solution import FlowConditions, Solution
@@ -67,6 +68,7 @@ def run_flow(
     increments: IncrementSettings | None = None,
     ambient: Ambient | None = None,
     uncertainty: str = ITERATION,
+    adapt: int = 0,
 ) -> FlowCase:
     """Mesh a body and solve every combination of Mach number, angle of attack and sideslip in one ensemble.
 
@@ -85,26 +87,27 @@ def run_flow(
         ambient: undisturbed air of every condition, for skin friction.
         uncertainty: "mesh" solves everything again on a coarser companion mesh, and the records hold
             `coefficient_errors` with the uncertainty by the mesh; "iteration" leaves that out.
+        adapt: passes that adapt the mesh to the flow, see `solve_adapted`; not together with uncertainty "mesh".
 
     Raises:
-        InputError: a bad condition or body, rates that move some point of the body at more than half the flight
-            speed, or skin friction without air.
+        InputError: a bad condition or body, adaptation without a number of cells, rates that move some point of the
+            body at more than half the flight speed, or skin friction without air.
     """
     conditions = _turning(product(list(machs), list(alphas), list(betas)), rates, reference, body.points)
     viscous = _viscous(increments, ambient, len(conditions))
-    if progress:
-        progress("mesh", 0, 1, "")
-    mesh = generate(body, mesh_settings, progress)
-    case = _solved(mesh, conditions, reference, flow_settings, progress, *viscous)
+    if adapt and uncertainty == MESH:
+        raise InputError(f"adapt: {adapt}, not allowed with uncertainty 'mesh': an adapted mesh has no companion")
+    solution = solve_adapted(body, mesh_settings, conditions, flow_settings, adapt, progress)
+    case = _told(solution, reference, *viscous)
     if uncertainty != MESH:
         return case
 
     def say(phase: str, done: int, total: int, text: str) -> None:
         (progress or silent)(f"companion: {phase}", done, total, text)
 
-    wall_cell = float(mesh.record["wall_cell_m"])
+    wall_cell = float(solution.mesh.record["wall_cell_m"])
     coarse = generate(body, coarser(mesh_settings, wall_cell), say)
-    return _compared(case, _solved(coarse, conditions, reference, flow_settings, say, *viscous), RATIO)
+    return _compared(case, _told(solve(coarse, conditions, flow_settings, say), reference, *viscous), RATIO)
 
 
 def run_to_accuracy(
@@ -151,7 +154,7 @@ def run_to_accuracy(
     def solved(mesh: Mesh) -> xr.Dataset:
         nonlocal last, number
         last = None  # its state is as large as the next one's
-        last = _solved(mesh, conditions, reference, flow_settings, say, *viscous)
+        last = _told(solve(mesh, conditions, flow_settings, say), reference, *viscous)
         number += 1
         return last.coefficients
 
@@ -210,7 +213,7 @@ def run_on_mesh(
         raise InputError(f"rates: {rates}, not allowed on a mesh with planes of symmetry")
     _require_along_symmetry(mesh, conditions)
     viscous = _viscous(increments, ambient, len(conditions))
-    return _solved(mesh, conditions, reference, flow_settings, progress, *viscous)
+    return _told(solve(mesh, conditions, flow_settings, progress), reference, *viscous)
 
 
 def _turning(
@@ -236,18 +239,9 @@ def _viscous(
     return increments, None if ambient is None else Air.of([ambient] * count)
 
 
-def _solved(
-    mesh: Mesh,
-    conditions: FlowConditions,
-    reference: Reference,
-    flow_settings: FlowSettings,
-    progress: Progress | None,
-    increments: IncrementSettings,
-    air: Air | None,
-) -> FlowCase:
-    solution = solve(mesh, conditions, flow_settings, progress)
+def _told(solution: Solution, reference: Reference, increments: IncrementSettings, air: Air | None) -> FlowCase:
     coefficients = integrate_with(solution, reference, increments, air)
-    return FlowCase(records(solution, coefficients), coefficients, mesh, solution)
+    return FlowCase(records(solution, coefficients), coefficients, solution.mesh, solution)
 
 
 def _require_along_symmetry(mesh: Mesh, conditions: FlowConditions) -> None:

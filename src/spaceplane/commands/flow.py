@@ -71,6 +71,7 @@ def flow(
     ] = "0,0,0",
     cell: options.Cell = None,
     cells: options.Cells = None,
+    adapt: options.Adapt = "0",
     domain: Annotated[
         str | None,
         typer.Option("--domain", metavar="x,y,z,x,y,z", help="Lower and upper corner of the air to mesh, metres."),
@@ -132,6 +133,7 @@ def flow(
     roles = {"wall": wall, "far": far, "symmetry": symmetry}
     mesh_options = {"--cell": cell, "--cells": cells, "--domain": domain, "--accuracy": accuracy}
     mesh_options["--uncertainty"] = uncertainty if uncertainty == "mesh" else None
+    mesh_options["--adapt"] = None if adapt == "0" else adapt
     if mesh_file is None:
         _check_body(body, roles)
     else:
@@ -161,6 +163,10 @@ def flow(
     mesh = options.mesh_settings(cell, cells, default)
     settings = replace(FlowSettings(), precision=solver_precision)
     on_sound = tuple(rate / ambient.speed_of_sound for rate in turning)
+    passes = options.adapt_passes(adapt, mesh)
+    if passes:
+        beside = {"--accuracy": accuracy, "--uncertainty": uncertainty if stated == "mesh" else None}
+        _refuse_options(beside, f"not allowed with --adapt {passes}: an adapted mesh has no coarser companion")
     extra = {"rates": on_sound, "increments": increments, "ambient": ambient}
     imported: Imported | None = None
     if mesh_file is None:
@@ -172,9 +178,9 @@ def flow(
             return _to_accuracy(asked, cells, args, extra, json_file, vtu, vtp)
         from spaceplane.aero.flow_case import run_flow  # the numerical stack: after all that can be refused without it
 
-        with progress_bar(2 if stated == "mesh" else 1) as tell:
+        with progress_bar((2 if stated == "mesh" else 1) + passes) as tell:
             tell("mesh", 0, 1, "")
-            case = run_flow(*args, tell, **extra, uncertainty=stated)
+            case = run_flow(*args, tell, **extra, uncertainty=stated, adapt=passes)
     else:
         from spaceplane.mesh.imported import read_mesh
 

@@ -38,6 +38,14 @@ Cells = Annotated[
     str | None,
     typer.Option("--cells", metavar="N", help="About how many cells the mesh has, such as 300k, instead of --cell."),
 ]
+Adapt = Annotated[
+    str,
+    typer.Option(
+        "--adapt",
+        metavar="N",
+        help="Adapt the mesh to the flow in N passes (0 to 3), up to the number of cells that --cells gives.",
+    ),
+]
 Precision = Annotated[
     str, typer.Option("--precision", metavar="fp32|fp64", help="Floating-point precision of the flow solver.")
 ]
@@ -170,6 +178,22 @@ def accuracy(text: str | None, cell: str | None, cells: str | None, uncertainty:
     if not TIGHTEST <= value <= LOOSEST:
         raise InputError(f"--accuracy: {text}, allowed {100 * TIGHTEST:g}% to {100 * LOOSEST:g}%")
     return value
+
+
+def adapt_passes(text: str, mesh: MeshSettings) -> int:
+    """How many passes adapt the mesh.
+
+    Raises:
+        InputError: not a whole number from 0 to 3, or passes where a wall cell is given instead of a number of cells.
+    """
+    value = number("--adapt", text)
+    if value != int(value):
+        raise InputError(f"--adapt: {text.strip()!r} is not a whole number")
+    if value and mesh.target_cells is None:
+        raise InputError(f"--adapt: {text.strip()}, goes with --cells, the number of cells of the last mesh")
+    from spaceplane.mesh.settings import check_passes
+
+    return check_passes("--adapt", int(value))
 
 
 def increment_settings(

@@ -96,7 +96,11 @@ def assemble(
         outside = (place[:, 1] < 0) & half
         place = place[~outside]
         leaf = leaves.index[0].at(place)
-        leaf = np.where(leaf >= 0, leaf, leaves.index[1].at(place // 2))  # beside a coarse wall
+        for level in range(1, len(leaves.index)):  # beside a coarse wall
+            missing = leaf < 0
+            if not missing.any():
+                break
+            leaf[missing] = leaves.index[level].at(place[missing] >> level)
         if len(leaf) and leaf.min() < 0:
             raise RuntimeError("a fluid face of a cut cell has no cell beyond it")
         sides[open_side[~outside], side] = first + leaf
@@ -213,6 +217,8 @@ def finish(
 
     inside = number >= 0
     index = number[inside]
+    added = inside & (a.cube != a.cube[root]).any(axis=1)
+    merged = np.unique(np.column_stack([number[added], a.cube[added], a.size[added]]), axis=0)
     volume = np.bincount(index, a.volume[inside], minlength=n)
     center = np.stack([np.bincount(index, a.volume[inside] * x, minlength=n) for x in a.center[inside].T], axis=1)
     center /= volume[:, None]
@@ -241,6 +247,8 @@ def finish(
         piece_part=walls[5],
         part_names=part_names,
         cell_cube_center=corner + a.cube[order] * cell,
+        wall_wetted=walls[6] * cell**2,
+        merged_cubes=merged * np.repeat([1.0, cell], [1, 4]) + np.concatenate([[0.0], corner, [0.0]]),
     )
     return mesh, number
 
@@ -249,7 +257,7 @@ def _walls(a: Assembly, cell: np.ndarray, kept: np.ndarray, parts: int):
     """Wall faces and their pieces from the surface polygons.
 
     Returns:
-        wall cell, wall centre, piece wall, piece area vector, piece centre, piece part.
+        wall cell, wall centre, piece wall, piece area vector, piece centre, piece part, wetted area of the wall.
     """
     cell = cell[kept]
     key = (cell * parts + a.polygon_part[kept]) * 2 + a.polygon_upstream[kept]
@@ -277,4 +285,5 @@ def _walls(a: Assembly, cell: np.ndarray, kept: np.ndarray, parts: int):
         area,
         center,
         part.astype(np.int32),
+        wall_sums[:, 3],
     )

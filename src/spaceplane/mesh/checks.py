@@ -11,12 +11,13 @@ from spaceplane.mesh.cutcells import CutCells
 from spaceplane.mesh.grid import Grid
 from spaceplane.mesh.mesh import Mesh
 from spaceplane.mesh.settings import MeshSettings
-from spaceplane.mesh.walls import fine_parts
 from spaceplane.vehicle.surface import Surface
 
 # A part is called thin when more than this share of the grid lines through it leave it within two cells; below that it
 # is the rim near a sharp edge, which every wing has.
 THIN_SHARE = 0.25
+# Measured at a wall cell of 0.25 m against 0.11 and 0.08 m, see docs/method.md.
+THIN_COST = "HORUS-2B so meshed has 3 % (Mach 2.5) to 10 % (Mach 0.8) less lift slope"
 
 
 def describe(
@@ -25,27 +26,27 @@ def describe(
     settings: MeshSettings,
     grid: Grid,
     cut: CutCells,
-    shift: np.ndarray,
     wetted: np.ndarray,
     body: float,
     merged: int,
     enclosed: float,
+    warnings: list[str],
     seconds: dict,
 ) -> dict:
     """The mesh's record.
 
     Args:
-        shift: [xyz] cell of the domain that the window of `cut` begins with.
         wetted: [part] wetted area, m2.
         body: volume of the domain that the cells leave out, m3.
         merged: control volumes merged into a neighbour.
         enclosed: volume of air, m3, that the far field cannot reach and that was left out.
+        warnings: of thin walls; the others are added.
         seconds: by phase.
     """
     begin = time.perf_counter()
     sides = 2 if grid.half else 1
     by_part = _part_errors(mesh, surface, wetted)
-    warnings = _thin_warnings(cut, shift, surface, grid, _wall_cells(surface, settings, grid))
+    warnings = list(warnings)
     if enclosed > 0.0:
         warnings.append(f"{enclosed:.4g} m3 of air enclosed by the body cannot be reached from outside and is left out")
     if cut.folded_edges:
@@ -110,26 +111,28 @@ def _part_errors(mesh: Mesh, surface: Surface, wetted: np.ndarray) -> dict:
     return errors
 
 
-def _wall_cells(surface: Surface, settings: MeshSettings, grid: Grid) -> np.ndarray:
-    """[part] size of the cells at each part's wall, m."""
-    return np.where(fine_parts(surface.part_names, settings), grid.cell, grid.wall_cell)
+def thin_warnings(cut: CutCells, shift: np.ndarray, surface: Surface, grid: Grid, sizes: np.ndarray) -> list[str]:
+    """Name the parts that are mostly thinner than two of their cells, with a typical place.
 
-
-def _thin_warnings(cut: CutCells, shift: np.ndarray, surface: Surface, grid: Grid, cells: np.ndarray) -> list[str]:
-    """Name the parts that are mostly thinner than two of their `cells` [part], with a typical place."""
+    Args:
+        shift: [xyz] cell of the domain that the window of `cut` begins with.
+        sizes: [place of `cut.thin`] edge of the cube of wall there, in finest cells.
+    """
     warnings = []
     parts = len(surface.part_names)
     examined = np.bincount(surface.part[cut.lines.astype(np.int64)], minlength=parts)
     part = surface.part[cut.thin[:, 4].astype(np.int64)]
     for k in range(parts):
-        here = cut.thin[(part == k) & (cut.thin[:, 3] * grid.cell < 2.0 * cells[k])]
+        at = (part == k) & (cut.thin[:, 3] < 2.0 * sizes)
+        here, cells = cut.thin[at], sizes[at] * grid.cell
         if len(here) == 0 or len(here) < THIN_SHARE * examined[k]:
             continue
-        typical = here[np.argsort(here[:, 3])[len(here) // 2]]
+        middle = np.argsort(here[:, 3])[len(here) // 2]
+        typical = here[middle]
         x, y, z = grid.corner + (typical[:3] + shift) * grid.cell
         warnings.append(
             f"{surface.part_names[k]}: wall thinner than two cells over {len(here) / examined[k]:.0%} of it, "
             f"for example {typical[3] * grid.cell:.3g} m at x={x:.3f} y={y:.3f} z={z:.3f} m "
-            f"(wall cell {cells[k]:.3g} m)"
+            f"(wall cell {cells[middle]:.3g} m); {THIN_COST}"
         )
     return warnings

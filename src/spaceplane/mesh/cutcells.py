@@ -37,7 +37,7 @@ class CutCells:
         split_cells: cells with more than one control volume.
         folded_edges: cell edges along which the surface lies inside itself.
         gauss_error: largest difference between a volume's sizes from the three coordinate directions.
-        thin: [n, (x, y, z, thickness, triangle)] places where a grid line leaves the body within four cells.
+        thin: [n, (x, y, z, thickness, triangle)] places where a grid line leaves the body within `thin_below` cells.
         lines: [n] triangle of every crossing examined for thickness.
         seconds: by phase.
     """
@@ -65,7 +65,9 @@ class CutCells:
     seconds: dict
 
 
-def cut_cells(points: np.ndarray, triangles: np.ndarray, shape: tuple, right_of: int | None = None) -> CutCells:
+def cut_cells(
+    points: np.ndarray, triangles: np.ndarray, shape: tuple, right_of: int | None = None, thin_below: float = 4.0
+) -> CutCells:
     """Cut the unit cells of a window with a closed surface.
 
     Args:
@@ -73,6 +75,7 @@ def cut_cells(points: np.ndarray, triangles: np.ndarray, shape: tuple, right_of:
         triangles: [triangle, 3].
         shape: cells of the window along x, y, z.
         right_of: keep only cells with j at or above this index (half of a symmetric body).
+        thin_below: thickness, in cells, below which walls are listed as thin.
 
     Raises:
         InputError: the surface is not closed, or so folded that inside and outside cannot be told apart.
@@ -118,7 +121,7 @@ def cut_cells(points: np.ndarray, triangles: np.ndarray, shape: tuple, right_of:
     volume = moment.mean(axis=1)
     per_cell = np.bincount(cell, minlength=len(cells))
     middle = np.clip(first_moment / np.maximum(volume, 1e-12)[:, None], -0.5, 0.5)
-    thin, lines = _thin_walls(surface, points, triangles)
+    thin, lines = _thin_walls(surface, points, triangles, thin_below)
     used = np.flatnonzero(polygon_volume >= 0)
     clock.append(time.perf_counter())
     names = ("surface subdivision", "face regions", "control volumes")
@@ -222,8 +225,8 @@ def _face_centers(axis, corner, area, moment):
     return center
 
 
-def _thin_walls(surface: Subdivision, points: np.ndarray, triangles: np.ndarray):
-    """Thickness of the body along grid lines nearly normal to it, where it is below four cells."""
+def _thin_walls(surface: Subdivision, points: np.ndarray, triangles: np.ndarray, below: float):
+    """Thickness of the body along grid lines nearly normal to it, where it is `below` so many cells."""
     corners = points[triangles]
     normal = np.abs(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]))
     steepest = normal.argmax(axis=1)
@@ -241,6 +244,6 @@ def _thin_walls(surface: Subdivision, points: np.ndarray, triangles: np.ndarray)
         entry = np.flatnonzero(pair & (steepest[triangle[:-1]] == axis))
         thickness = at[entry + 1, axis] - at[entry, axis]
         lines.append(triangle[entry])
-        few = entry[thickness < 4.0]
-        thin.append(np.column_stack([at[few], thickness[thickness < 4.0], triangle[few]]))
+        few = entry[thickness < below]
+        thin.append(np.column_stack([at[few], thickness[thickness < below], triangle[few]]))
     return np.concatenate(thin), np.concatenate(lines)

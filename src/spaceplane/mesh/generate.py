@@ -10,15 +10,16 @@ import numpy as np
 
 from spaceplane.errors import InputError
 from spaceplane.mesh import assembly, octree
-from spaceplane.mesh.checks import describe
+from spaceplane.mesh.checks import describe, thin_warnings
 from spaceplane.mesh.coarsen import coarsen
 from spaceplane.mesh.compiled import CACHE
 from spaceplane.mesh.cutcells import CutCells, cut_cells
-from spaceplane.mesh.grid import Grid, boxes_in_cells, place_grid
+from spaceplane.mesh.grid import Grid, boxes_in_cells, place_grid, refined
 from spaceplane.mesh.mesh import Mesh
 from spaceplane.mesh.settings import MeshSettings
+from spaceplane.mesh.sizing import Sizing, finer_levels, round_edges, split, split_cells
 from spaceplane.mesh.symmetry import is_symmetric, mirrored_parts
-from spaceplane.mesh.walls import fine_parts, fine_walls, join_coarse_walls
+from spaceplane.mesh.walls import fine_parts, fine_walls, join_coarse_walls, wall_sizes
 from spaceplane.progress import Progress, silent
 from spaceplane.vehicle.lofts import box
 from spaceplane.vehicle.surface import Surface
@@ -29,7 +30,12 @@ LARGEST_WINDOW = 400_000_000
 PAD_BELOW, PAD_ABOVE = 2, 3
 
 
-def generate(surface: Surface, settings: MeshSettings | None = None, progress: Progress | None = None) -> Mesh:
+def generate(
+    surface: Surface,
+    settings: MeshSettings | None = None,
+    progress: Progress | None = None,
+    sizing: Sizing | None = None,
+) -> Mesh:
     """Mesh the air around a closed surface with an octree whose cells the body cuts.
 
     The wall is exact: wetted area, projected areas and volume equal the surface's, whatever the cell size. A surface
@@ -39,16 +45,20 @@ def generate(surface: Surface, settings: MeshSettings | None = None, progress: P
         surface: closed triangulated surface, m.
         settings: cell size and grading; None for the defaults.
         progress: told when kernels must be compiled first, see `compile_kernels`.
+        sizing: cells wanted smaller than the settings make them, at walls as well; the grid of the settings stays.
 
     Raises:
-        InputError: empty, open or folded surface; cells too many for memory; body too large for the domain.
+        InputError: empty, open or folded surface; cells too many for memory; body too large for the domain; a sizing
+            together with `target_cells`.
     """
     settings = settings or MeshSettings()
     _check(surface)
     fine_parts(surface.part_names, settings)
     compile_kernels(progress)
     if settings.target_cells is None:
-        return _generate(surface, settings, _symmetric(surface, settings))
+        return _with_edges(surface, settings, _symmetric(surface, settings), sizing)
+    if sizing is not None:
+        raise InputError(f"target_cells: {settings.target_cells}, must be None with a sizing")
     return _meet_target(surface, settings)
 
 
@@ -100,7 +110,7 @@ def _meet_target(surface: Surface, settings: MeshSettings) -> Mesh:
     slope = -1.7
     best = previous = None
     for _ in range(10):
-        mesh = _generate(surface, dataclasses.replace(settings, wall_cell=math.exp(trial), target_cells=None), half)
+        mesh = _with_edges(surface, dataclasses.replace(settings, wall_cell=math.exp(trial), target_cells=None), half)
         miss = math.log(mesh.cells) - goal
         if best is None or abs(miss) < abs(best[0]):
             best = (miss, mesh)
@@ -119,8 +129,12 @@ def _meet_target(surface: Surface, settings: MeshSettings) -> Mesh:
     return mesh
 
 
-def _cut(surface: Surface, grid: Grid) -> tuple[CutCells, np.ndarray]:
-    """Cut the cells round the body; also the domain cell that the window begins with."""
+def _cut(surface: Surface, grid: Grid, thin: float) -> tuple[CutCells, np.ndarray]:
+    """Cut the cells round the body; also the domain cell that the window begins with.
+
+    Args:
+        thin: thickness in finest cells up to which thin walls are listed.
+    """
     scaled = (surface.points - grid.corner) / grid.cell
     lowest = np.floor(scaled.min(axis=0)).astype(np.int64) - PAD_BELOW
     if grid.half:
@@ -133,22 +147,35 @@ def _cut(surface: Surface, grid: Grid) -> tuple[CutCells, np.ndarray]:
             f"at most {LARGEST_WINDOW:.3g} allowed"
         )
     right_of = PAD_BELOW if grid.half else None
-    cut = cut_cells(scaled - lowest, surface.triangles, tuple(int(n) for n in shape), right_of)
+    cut = cut_cells(scaled - lowest, surface.triangles, tuple(int(n) for n in shape), right_of, thin)
     return cut, lowest
 
 
-def _generate(surface: Surface, settings: MeshSettings, half: bool) -> Mesh:
+def _with_edges(surface: Surface, settings: MeshSettings, half: bool, sizing: Sizing | None = None) -> Mesh:
+    """Mesh with the given wall cell, cells at the edges of thin walls halved as often as the settings ask for."""
+    mesh = _generate(surface, settings, half, sizing)
+    for _ in range(settings.edge_levels):
+        edges = round_edges(mesh)
+        if not edges.any():
+            break
+        mesh = _generate(surface, settings, half, split(mesh, edges))
+    return mesh
+
+
+def _generate(surface: Surface, settings: MeshSettings, half: bool, sizing: Sizing | None = None) -> Mesh:
     """Mesh with the given wall cell."""
     clock = time.perf_counter
     begin = clock()
     grid = place_grid(surface, settings, half)
+    finer = finer_levels(sizing, settings.boxes, grid.cell)
+    grid = refined(grid, finer)
     expected = 3.0 * surface.area / grid.wall_cell**2
     if expected > settings.max_cells:
         raise InputError(
             f"wall_cell: {grid.wall_cell:.6g} m gives more than {expected:.3g} cells, "
             f"at most {settings.max_cells} allowed"
         )
-    cut, shift = _cut(surface, grid)
+    cut, shift = _cut(surface, grid, 4.0 * grid.wall_cell / grid.cell)
     cut_done = clock()
 
     skip = -shift[1] if half else 0
@@ -156,17 +183,17 @@ def _generate(surface: Surface, settings: MeshSettings, half: bool) -> Mesh:
     extent = grid.size * 2**grid.levels
     if (window.origin < 0).any() or (window.origin + window.array.shape > extent).any():
         raise InputError("domain: the body is larger than the domain")
-    fine = fine_walls(window, cut, shift, surface, settings)
+    fine = fine_walls(octree.ancestors(window, finer), finer, cut, shift, surface, settings)
     layers = (settings.wall_layers, settings.growth_layers)
-    refined, coarse_walls = octree.refined_levels(
-        window, fine, grid.size, grid.levels, *layers, boxes_in_cells(settings, grid)
+    refined_cells, blocks = octree.refined_levels(
+        window, fine, finer, grid.size, grid.levels, *layers, boxes_in_cells(settings, grid), split_cells(sizing, grid)
     )
-    expected = octree.count_leaves(refined) * (2 if half else 1)
+    expected = octree.count_leaves(refined_cells) * (2 if half else 1)
     if expected > settings.max_cells:
         raise InputError(
             f"wall_cell: {grid.wall_cell:.6g} m gives {expected} cells, at most {settings.max_cells} allowed"
         )
-    leaves = octree.build_leaves(refined, octree.Window(shift, cut.fluid))
+    leaves = octree.build_leaves(refined_cells, octree.Window(shift, cut.fluid))
     octree_done = clock()
 
     # in wall cells the leaves' volumes are integers and their sum exact
@@ -175,7 +202,7 @@ def _generate(surface: Surface, settings: MeshSettings, half: bool) -> Mesh:
 
     upstream = surface.area_vectors[:, 0] < 0.0
     whole = assembly.assemble(cut, leaves, shift, surface.part.astype(np.int64), upstream, half)
-    root = join_coarse_walls(whole, coarse_walls)
+    root = join_coarse_walls(whole, blocks)
     joined = int((root != np.arange(len(root))).sum()) * (2 if half else 1)
     root = assembly.join_small(whole, settings.merge_fraction, root)
     if half:
@@ -197,5 +224,7 @@ def _generate(surface: Surface, settings: MeshSettings, half: bool) -> Mesh:
     wetted = np.bincount(whole.polygon_part, whole.polygon_size, minlength=len(surface.part_names)) * grid.cell**2
     enclosed = float(whole.volume[~kept].sum()) * grid.cell**3
     merged = int((root != np.arange(len(root))).sum()) - joined
-    mesh.record.update(describe(mesh, surface, settings, grid, cut, shift, wetted, body, merged, enclosed, seconds))
+    sizes = wall_sizes(np.floor(cut.thin[:, :3]).astype(np.int64) + shift, blocks)
+    thin = thin_warnings(cut, shift, surface, grid, sizes)
+    mesh.record.update(describe(mesh, surface, settings, grid, cut, wetted, body, merged, enclosed, thin, seconds))
     return mesh

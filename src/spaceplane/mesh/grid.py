@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -90,6 +90,11 @@ def place_grid(surface: Surface, settings: MeshSettings, half: bool) -> Grid:
         size[1] //= 2
         corner[1] = 0.0
     return Grid(cell, settings.wall_cell, corner, size, levels, half)
+
+
+def refined(grid: Grid, finer: int) -> Grid:
+    """The same grid with `finer` more levels below the finest; every cell of `grid` is one of its cells."""
+    return replace(grid, cell=grid.cell / 2**finer, levels=grid.levels + finer)
 
 
 def boxes_in_cells(settings: MeshSettings, grid: Grid) -> list:

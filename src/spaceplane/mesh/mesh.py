@@ -33,6 +33,10 @@ class Mesh:
         record: what the generator has to say: counts, merged and split cells, warnings, seconds.
         cell_cube_center: [cell, xyz] centre of the octree cube of edge `cell_size` that the cell lies in (a merged
             cell: the cube of its largest member); None on imported meshes.
+        merged_cubes: [cube, (cell, x, y, z, edge)] centre and edge, m, of octree cubes that merging added to a cell;
+            None on imported meshes.
+        wall_wetted: [wall] area of the surface that a wall face stands for, m2: more than the size of its area vector
+            where the surface turns; None on imported meshes.
         wall_symmetry: [wall] whether the wall face lies in a plane of symmetry: a slip wall to the flow, no part of the
             body (it has no pieces and bears no force); None where no wall face does.
     """
@@ -56,6 +60,8 @@ class Mesh:
     part_names: tuple[str, ...]
     record: dict = field(default_factory=dict)
     cell_cube_center: np.ndarray | None = None
+    merged_cubes: np.ndarray | None = None
+    wall_wetted: np.ndarray | None = None
     wall_symmetry: np.ndarray | None = None
 
     @property

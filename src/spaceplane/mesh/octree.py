@@ -26,10 +26,10 @@ class Window:
     array: np.ndarray
 
     def at(self, place: np.ndarray) -> np.ndarray:
-        """Entries at places [n, ijk], -1 outside the window."""
+        """Entries at places [n, ijk]; outside the window -1, or False where entries are bool."""
         local = place - self.origin
         inside = ((local >= 0) & (local < self.array.shape)).all(axis=1)
-        found = np.full(len(place), -1, self.array.dtype)
+        found = np.full(len(place), False if self.array.dtype == bool else -1, self.array.dtype)
         found[inside] = self.array[tuple(local[inside].T)]
         return found
 
@@ -46,7 +46,7 @@ class Leaves:
         face_fine: [face] the finer of the two leaves (the first when equal).
         face_side: [face] side of the finer leaf that the face lies on, 0 below, 1 above.
         far_leaf, far_axis, far_side: the same for faces on the boundary of the domain.
-        index: windows of levels 0 and 1 with the leaf of each cell, -1 where none.
+        index: [level] windows with the leaf of each cell, -1 where none.
     """
 
     level: np.ndarray
@@ -58,48 +58,117 @@ class Leaves:
     far_leaf: np.ndarray
     far_axis: np.ndarray
     far_side: np.ndarray
-    index: tuple[Window, Window]
+    index: tuple[Window, ...]
 
 
 def refined_levels(
-    cut: Window, fine: Window, size: np.ndarray, levels: int, wall_layers: int, growth_layers: int, boxes: list
-) -> tuple[list, Window]:
+    cut: Window,
+    fine: Window,
+    wall_level: int,
+    size: np.ndarray,
+    levels: int,
+    wall_layers: int,
+    growth_layers: int,
+    boxes: list,
+    wanted: dict[int, Window],
+) -> tuple[list, list]:
     """Which cells of each level are refined.
 
     Args:
         cut: cut cells on level 0.
-        fine: those of them that shall stay cells of level 0, in an equal window.
+        fine: those cells of `wall_level` with cut cells in them that distance from the wall alone keeps that size.
+        wall_level: level of the finest walls that the settings ask for; only `wanted` makes cells below it.
         size: [3] domain in cells of the top level.
         levels: number of the top level.
-        wall_layers: layers of level-0 cells around the cut cells.
+        wall_layers: layers of cells of `wall_level` around the cut ones.
         growth_layers: layers of each coarser level.
         boxes: (level, lower, upper) in level-0 cells: no cell there is coarser than `level`.
+        wanted: by level, cells that shall be refined whatever their distance from the wall.
 
     Returns:
         [level] Window of cells that are refined into the level below; entry 0 is the cut cells, the last covers
-        the domain. And the cells of level 1 that are refined only because they are cut: to be joined again.
+        the domain. And [level] the largest cubes that are refined only because the surface is cut on level 0: what air
+        connects in one of them is to be joined again.
     """
-    refined = [cut]
+    walls = [cut]
+    for _ in range(levels):
+        walls.append(_parents(walls[-1]))
+    targets: list[Window] = [Window(cut.origin, np.zeros_like(cut.array))]
+    chain, layers = fine, wall_layers
     for level in range(1, levels + 1):
         extent = size * 2 ** (levels - level)
-        grown = _dilate(fine if level == 1 else refined[-1], wall_layers if level == 1 else growth_layers, extent * 2)
-        window = _parents(grown)
+        near = Window(walls[level].origin, np.zeros_like(walls[level].array))
+        if level > wall_level:
+            near = _parents(_dilate(chain, layers, extent * 2))
         for at_level, lower, upper in boxes:
             if at_level < level:
                 low = np.clip(np.floor(np.asarray(lower) / 2**level).astype(np.int64), 0, extent - 1)
                 high = np.clip(np.ceil(np.asarray(upper) / 2**level).astype(np.int64), low + 1, extent)
-                window = _mark(window, low, high)
-        if level == 1:
-            cut_parents = _parents(cut)
-            here = _slices(cut_parents, window.origin)
-            joined = Window(cut_parents.origin, cut_parents.array & ~window.array[here])
-            window.array[here] |= cut_parents.array
-        refined.append(window)
+                near = _mark(near, low, high)
+        if level > wall_level:
+            chain = _union(near, walls[level]) if level == wall_level + 1 else near
+            layers = growth_layers
+        target = _union(near, wanted[level]) if level in wanted else near
+        if (wanted or level <= wall_level + 1) and targets[-1].array.any():
+            # neighbours of split cells exist on their level: 2:1
+            target = _union(target, _parents(_dilate(targets[-1], 1, extent * 2)))
+        targets.append(target)
+    refined = [cut] + [_union(target, wall) for target, wall in zip(targets[1:], walls[1:], strict=True)]
+    blocks = [
+        Window(wall.origin, wall.array & ~_within(target, wall) & _parents_in(targets, level, wall))
+        for level, (target, wall) in enumerate(zip(targets, walls, strict=True))
+    ]
     top = np.zeros(size, bool)
     last = refined[-1]
     top[_slices(last, np.zeros(3, np.int64))] = last.array
     refined[-1] = Window(np.zeros(3, np.int64), top)
-    return refined, joined
+    return refined, blocks
+
+
+def ancestors(cut: Window, level: int) -> Window:
+    """Cells of `level` with a marked cell of level 0 in them."""
+    for _ in range(level):
+        cut = _parents(cut)
+    return cut
+
+
+def window_of(places: np.ndarray, extent: np.ndarray) -> Window:
+    """Window that marks the given places [n, ijk]; those outside `extent` are dropped."""
+    places = places[((places >= 0) & (places < extent)).all(axis=1)]
+    low = places.min(axis=0) if len(places) else np.zeros(3, np.int64)
+    high = places.max(axis=0) + 1 if len(places) else np.ones(3, np.int64)
+    array = np.zeros(high - low, bool)
+    array[tuple((places - low).T)] = True
+    return Window(low, array)
+
+
+def _union(a: Window, b: Window) -> Window:
+    """What either window marks."""
+    origin = np.minimum(a.origin, b.origin)
+    array = np.zeros(np.maximum(a.origin + a.array.shape, b.origin + b.array.shape) - origin, bool)
+    for window in (a, b):
+        array[_slices(window, origin)] |= window.array
+    return Window(origin, array)
+
+
+def _within(window: Window, frame: Window) -> np.ndarray:
+    """What `window` marks of the cells that `frame` covers."""
+    found = np.zeros(frame.array.shape, bool)
+    low = np.maximum(window.origin, frame.origin)
+    high = np.minimum(window.origin + window.array.shape, frame.origin + frame.array.shape)
+    if (low < high).all():
+        here, there = (
+            tuple(slice(a, b) for a, b in zip(low - w.origin, high - w.origin, strict=True)) for w in (frame, window)
+        )
+        found[here] = window.array[there]
+    return found
+
+
+def _parents_in(targets: list, level: int, frame: Window) -> np.ndarray:
+    """Whether the parents of the cells of `level` in `frame` are among the targets; the top level's all are."""
+    if level + 1 == len(targets):
+        return np.ones(frame.array.shape, bool)
+    return _within(_children(targets[level + 1]), frame)
 
 
 def _slices(window: Window, origin: np.ndarray) -> tuple:
@@ -187,7 +256,7 @@ def build_leaves(refined: list, fluid: Window) -> Leaves:
         coarse = min(level + 1, len(refined) - 1)
         first = sum(len(p) for p in places[:level])
         extent = np.array(refined[-1].array.shape, np.int64) * 2 ** (len(refined) - 1 - level)
-        faces, far = _connect(
+        faces, far, open_sides = _connect(
             places[level],
             first,
             extent,
@@ -197,7 +266,7 @@ def build_leaves(refined: list, fluid: Window) -> Leaves:
             indices[coarse].array,
             indices[coarse].origin,
         )
-        parts.append(faces)
+        parts += [faces, _across_levels(open_sides, places[level], first, level, indices)]
         far_parts.append(far)
     faces = np.concatenate(parts)
     far = np.concatenate(far_parts)
@@ -211,8 +280,27 @@ def build_leaves(refined: list, fluid: Window) -> Leaves:
         far_leaf=far[:, 0].copy(),
         far_axis=far[:, 1].copy(),
         far_side=far[:, 2].copy(),
-        index=(indices[0], indices[1]),
+        index=tuple(indices),
     )
+
+
+def _across_levels(open_sides: np.ndarray, places: np.ndarray, first: int, level: int, indices: list) -> np.ndarray:
+    """Faces [face, 5] of leaves with leaves two or more levels coarser, as they occur in cubes of coarse wall.
+
+    Args:
+        open_sides: [n, (leaf, axis, side)] where neither this level nor the next has a leaf; most lie in the body.
+    """
+    leaf, axis, side = open_sides.T
+    at = places[leaf - first].astype(np.int64)
+    at[np.arange(len(leaf)), axis] += 2 * side - 1
+    other = np.full(len(leaf), -1, np.int64)
+    for up in range(level + 2, len(indices)):
+        found = indices[up].at(at >> (up - level))
+        other = np.where(other >= 0, other, found)
+    met = other >= 0
+    leaf, axis, side, other = leaf[met], axis[met], side[met], other[met]
+    below, above = np.where(side == 1, leaf, other), np.where(side == 1, other, leaf)
+    return np.stack([below, above, axis, leaf, side], axis=1).astype(np.int32)
 
 
 @kernel
@@ -248,12 +336,17 @@ def _number(there, origin, refined, refined_origin, fluid, fluid_origin, level, 
 
 @kernel
 def _connect(places, first, extent, exists, index, origin, coarse_index, coarse_origin):
-    """Faces of one level's leaves with leaves of the same level (seen from below) and of the next coarser one."""
+    """Faces of one level's leaves with leaves of the same level (seen from below) and of the next coarser one.
+
+    Also the faces on the boundary of the domain, and the sides where neither level has a leaf.
+    """
     count = len(places)
     faces = np.empty((6 * count, 5), np.int32)
     far = np.empty((6 * count, 3), np.int32)
+    open_sides = np.empty((6 * count, 3), np.int32)
     n = 0
     m = 0
+    open_count = 0
     at = np.empty(3, np.int64)
     for leaf in range(count):
         for axis in range(3):
@@ -279,8 +372,14 @@ def _connect(places, first, extent, exists, index, origin, coarse_index, coarse_
                         at[1] // 2 - coarse_origin[1],
                         at[2] // 2 - coarse_origin[2],
                     )
-                    other = coarse_index[a, b, c]
+                    inside = 0 <= a < coarse_index.shape[0] and 0 <= b < coarse_index.shape[1]
+                    inside = inside and 0 <= c < coarse_index.shape[2]
+                    other = coarse_index[a, b, c] if inside else -1
                     if other < 0:
+                        open_sides[open_count, 0] = first + leaf
+                        open_sides[open_count, 1] = axis
+                        open_sides[open_count, 2] = side
+                        open_count += 1
                         continue
                 faces[n, 0] = first + leaf if side == 1 else other
                 faces[n, 1] = other if side == 1 else first + leaf
@@ -288,4 +387,4 @@ def _connect(places, first, extent, exists, index, origin, coarse_index, coarse_
                 faces[n, 3] = first + leaf
                 faces[n, 4] = side
                 n += 1
-    return faces[:n].copy(), far[:m].copy()
+    return faces[:n].copy(), far[:m].copy(), open_sides[:open_count].copy()

@@ -7,6 +7,24 @@ from dataclasses import dataclass
 
 from spaceplane.errors import InputError
 
+MOST_PASSES = 3
+"""Times that a mesh may be adapted to the flow; each halves some cells."""
+
+
+def check_passes(field: str, passes: int) -> int:
+    """The number of passes that adapt a mesh, when it is allowed.
+
+    Raises:
+        InputError: naming `field`.
+    """
+    if isinstance(passes, bool) or not isinstance(passes, int) or not 0 <= passes <= MOST_PASSES:
+        raise InputError(f"{field}: {passes}, a whole number from 0 to {MOST_PASSES} is allowed")
+    return passes
+
+
+MOST_EDGE_LEVELS = 4
+"""Times that cells at edges may be halved."""
+
 
 @dataclass(frozen=True)
 class RefinementBox:
@@ -40,7 +58,9 @@ class MeshSettings:
             `elevon_right`.
         fine_edges: half-sized cells also where the wall turns by more than about 50 degrees within a wall cell: leading
             and trailing edges, tips, plates thinner than a cell.
-        boxes: refinement boxes; mirrored on a body meshed as half and mirror image.
+        edge_levels: how many times cells are halved where air connects the two sides of a thin wall round its edge
+            within a cell (the wall turns by more than 120 degrees there): one pressure acts on both sides.
+        boxes: refinement boxes, for air and walls; mirrored on a body meshed as half and mirror image.
         symmetric: mirror the mesh of the right half; None finds out whether the surface is symmetric about y = 0, False
             meshes both sides even then.
         offset: (x, z) position of the body's lower corner within a wall cell, as a fraction of the cell.
@@ -56,6 +76,7 @@ class MeshSettings:
     merge_fraction: float = 0.3
     fine_parts: tuple[str, ...] = ()
     fine_edges: bool = False
+    edge_levels: int = 0
     boxes: tuple[RefinementBox, ...] = ()
     symmetric: bool | None = None
     offset: tuple[float, float] = (0.38196601125, 0.2360679775)
@@ -81,6 +102,8 @@ class MeshSettings:
         for name in ("wall_layers", "growth_layers"):
             if getattr(self, name) < 1:
                 raise InputError(f"{name}: {getattr(self, name)}, must be at least 1")
+        if not 0 <= self.edge_levels <= MOST_EDGE_LEVELS:
+            raise InputError(f"edge_levels: {self.edge_levels}, allowed 0 to {MOST_EDGE_LEVELS}")
         if not 0.0 <= self.merge_fraction <= 0.9:
             raise InputError(f"merge_fraction: {self.merge_fraction}, allowed 0 to 0.9")
         if self.domain is not None and not all(low < high for low, high in zip(*self.domain, strict=True)):

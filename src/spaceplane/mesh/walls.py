@@ -1,6 +1,6 @@
-"""Finer cells at chosen parts and at edges; at the other walls pairs of octree levels are joined again.
+"""Finer cells at chosen parts and at edges; at the other walls octree levels are joined again.
 
-The whole surface is cut at the finest level. Where the wall may be coarser, the pieces of a level-1 cube that air
+The whole surface is cut at the finest level. Where the wall may be coarser, the pieces of a larger cube that air
 connects become one control volume, so that the coarser wall is as exact as the finer one.
 """
 
@@ -36,15 +36,17 @@ def fine_parts(names: tuple[str, ...], settings: MeshSettings) -> np.ndarray:
     return fine
 
 
-def fine_walls(window: Window, cut: CutCells, shift: np.ndarray, surface: Surface, settings: MeshSettings) -> Window:
-    """The cut cells of `window` that keep the finest size; all of them where walls are not graded.
+def fine_walls(
+    window: Window, level: int, cut: CutCells, shift: np.ndarray, surface: Surface, settings: MeshSettings
+) -> Window:
+    """The cells of `window`, those of `level` with walls in them, that keep this size; all where walls are not graded.
 
     Args:
         shift: [xyz] cell of the domain that the window of `cut` begins with.
     """
     if not settings.graded_wall:
         return window
-    place = (cut.cell[cut.polygon_volume] + shift) // 2
+    place = (cut.cell[cut.polygon_volume] + shift) >> (level + 1)
     shape = (window.origin + window.array.shape - window.origin // 2 * 2) // 2 + 1
     cube = np.ravel_multi_index(tuple((place - window.origin // 2).T), shape)
     count = int(np.prod(shape))
@@ -60,25 +62,44 @@ def fine_walls(window: Window, cut: CutCells, shift: np.ndarray, surface: Surfac
     return Window(window.origin, window.array & chosen[inside])
 
 
-def join_coarse_walls(a: Assembly, cubes: Window) -> np.ndarray:
-    """Join what air connects within each of the given level-1 cubes; their cells get that cube and its size.
+def join_coarse_walls(a: Assembly, blocks: list[Window]) -> np.ndarray:
+    """Join what air connects within each of the given cubes; their cells get that cube and its size.
+
+    Args:
+        a: cells and faces; `size` and `cube` are changed in place.
+        blocks: [level] disjoint cubes of that level.
 
     Returns:
         [cell] the cell that stands for each joined group.
     """
     n = len(a.volume)
-    if not cubes.array.any():
-        return np.arange(n)
-    place = np.floor(a.cube / 2.0).astype(np.int64) - cubes.origin
-    inside = (a.size == 1.0) & (place >= 0).all(axis=1) & (place < cubes.array.shape).all(axis=1)
-    inside[inside] = cubes.array[tuple(place[inside].T)]
     group = np.full(n, -1, np.int64)
-    group[inside] = np.ravel_multi_index(tuple(place[inside].T), cubes.array.shape)
-    a.size[inside] = 2.0
-    a.cube[inside] = 2.0 * (place[inside] + cubes.origin) + 1.0
+    first = 0
+    for level, cubes in enumerate(blocks):
+        if level == 0 or not cubes.array.any():
+            continue
+        edge = 2**level
+        place = np.floor(a.cube / edge).astype(np.int64) - cubes.origin
+        inside = (a.size < edge) & (group < 0) & (place >= 0).all(axis=1) & (place < cubes.array.shape).all(axis=1)
+        inside[inside] = cubes.array[tuple(place[inside].T)]
+        group[inside] = first + np.ravel_multi_index(tuple(place[inside].T), cubes.array.shape)
+        first += cubes.array.size
+        a.size[inside] = edge
+        a.cube[inside] = edge * (place[inside] + cubes.origin + 0.5)
+    if first == 0:
+        return np.arange(n)
     same = (group[a.faces[:, 0]] >= 0) & (group[a.faces[:, 0]] == group[a.faces[:, 1]])
     ends = a.faces[same]
     graph = coo_matrix((np.ones(len(ends), np.int8), (ends[:, 0], ends[:, 1])), shape=(n, n))
     _, label = connected_components(graph, directed=False)
-    _, first = np.unique(label, return_index=True)
-    return first[label]
+    _, root = np.unique(label, return_index=True)
+    return root[label]
+
+
+def wall_sizes(places: np.ndarray, blocks: list[Window]) -> np.ndarray:
+    """[n] edge, in finest cells, of the cubes of wall that hold the finest cells `places` [n, ijk]."""
+    size = np.ones(len(places), np.int64)
+    for level, cubes in enumerate(blocks):
+        if level:
+            size[cubes.at(places >> level) > 0] = 2**level
+    return size

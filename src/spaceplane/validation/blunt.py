@@ -22,3 +22,16 @@ def standoff_billig(mach: float) -> float:
     if not mach > 1.0:
         raise InputError(f"mach = {mach}: a bow shock needs a Mach number above 1")
     return 0.143 * math.exp(3.24 / mach**2)
+
+
+def standoff_seiff(mach: float, gamma: float = 1.4) -> float:
+    """Shock stand-off distance over the radius of a sphere: 0.78 of the density ratio across the normal shock.
+
+    Source: Seiff, "Recent information on hypersonic flow fields", NASA SP-24 (1962).
+
+    Raises:
+        InputError: a Mach number of 1 or below.
+    """
+    if not mach > 1.0:
+        raise InputError(f"mach = {mach}: a bow shock needs a Mach number above 1")
+    return 0.78 * (2.0 + (gamma - 1.0) * mach**2) / ((gamma + 1.0) * mach**2)

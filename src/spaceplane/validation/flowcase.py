@@ -10,6 +10,7 @@ from spaceplane.flow.solve import solve
 from spaceplane.mesh.generate import generate
 from spaceplane.mesh.mesh import Mesh
 from spaceplane.mesh.settings import MeshSettings
+from spaceplane.mesh.sizing import Sizing
 from spaceplane.validation.cases import Progress
 from spaceplane.vehicle.properties import ReferenceLengths
 from spaceplane.vehicle.surface import Surface
@@ -24,6 +25,7 @@ def solve_body(
     conditions: FlowConditions,
     progress: Progress | None = None,
     done: float = 0.0,
+    sizing: Sizing | None = None,
 ) -> Solution:
     """Mesh the body and solve every condition; default flow settings but for the number of iterations allowed.
 
@@ -33,13 +35,14 @@ def solve_body(
         conditions: free streams.
         progress: told when kernels are compiled, which only a first run does.
         done: fraction of the case (0 to 1) that lies behind it.
+        sizing: cells wanted smaller than `mesh` makes them.
     """
 
     def say(phase: str, _done: int, _total: int, text: str) -> None:
         if progress and phase.startswith("compile"):
             progress(f"{phase}: {text}", done)
 
-    return solve(generate(surface, mesh, say), conditions, FlowSettings(iterations=ITERATIONS), say)
+    return solve(generate(surface, mesh, say, sizing), conditions, FlowSettings(iterations=ITERATIONS), say)
 
 
 def reference_of(

@@ -1,4 +1,4 @@
-"""Validation case: the sphere from Mach 0.5 to 10."""
+"""Validation case: the sphere from Mach 0.5 to 10, and its stagnation region up to Mach 25."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from spaceplane.aero.exact.stagnation import normal_shock_pressure, stagnation_c
 from spaceplane.aero.integrate import integrate
 from spaceplane.flow.solution import FlowConditions, Solution
 from spaceplane.mesh.settings import MeshSettings
-from spaceplane.validation import bodies
+from spaceplane.validation import bodies, sphere_nose
 from spaceplane.validation.blunt import DRAG_LOTH, standoff_billig
 from spaceplane.validation.cases import Progress
 from spaceplane.validation.flowcase import part_of_wall, reference_of, solve_body
@@ -35,7 +35,7 @@ def run(fine: bool, progress: Progress) -> list[Record]:
     """Stagnation Cp, shock stand-off and drag of a sphere of radius 1 m.
 
     Args:
-        fine: 48 wall cells per diameter instead of 24.
+        fine: 48 wall cells per diameter instead of 24, and a third mesh of the nose.
         progress: told what runs.
     """
     cell = 2.0 / (48 if fine else 24)
@@ -43,7 +43,7 @@ def run(fine: bool, progress: Progress) -> list[Record]:
     zero = np.zeros(len(MACHS))
     conditions = FlowConditions(np.array(MACHS), zero, zero)
     solution = solve_body(bodies.sphere(), MeshSettings(wall_cell=cell, wall_layers=WALL_LAYERS), conditions, progress)
-    return sphere_records(solution)
+    return sphere_records(solution) + sphere_nose.run(CASE, fine, progress)
 
 
 def sphere_records(solution: Solution) -> list[Record]:

@@ -1,0 +1,126 @@
+"""Cells wanted smaller than the distance from the wall makes them, place by place."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from spaceplane.errors import InputError
+from spaceplane.mesh.grid import Grid
+from spaceplane.mesh.mesh import Mesh
+from spaceplane.mesh.octree import Window, window_of
+from spaceplane.mesh.settings import RefinementBox
+
+MOST_FINER = 5
+"""Levels that a sizing may add below the wall cell of the settings."""
+# Length of a wall's area vector on its wetted area: cos(120 deg / 2).
+SHARP = 0.5
+
+
+@dataclass(frozen=True)
+class Sizing:
+    """Largest cell wanted at given points; between them the octree is graded.
+
+    Attributes:
+        point: [point, xyz] m.
+        cell: [point] no cell that holds the point is larger, m.
+    """
+
+    point: np.ndarray
+    cell: np.ndarray
+
+    def __post_init__(self) -> None:
+        """Refuse what is no sizing.
+
+        Raises:
+            InputError: naming the field.
+        """
+        if np.ndim(self.point) != 2 or np.shape(self.point)[1] != 3 or len(self.point) != len(self.cell):
+            raise InputError(f"sizing: {np.shape(self.point)} points for {np.shape(self.cell)} cells do not fit")
+        if not (np.isfinite(self.point).all() and np.isfinite(self.cell).all() and (np.asarray(self.cell) > 0).all()):
+            raise InputError("sizing: points and cells must be finite, cells above 0")
+
+
+def split(mesh: Mesh, marked: np.ndarray) -> Sizing:
+    """Cells as small as those of `mesh`, and half as small where marked.
+
+    Args:
+        mesh: of `generate`; built again with the same settings and this sizing, only marked cells are split, and what
+            grading needs besides.
+        marked: [cell] bool.
+    """
+    owner, center, size = octree_cubes(mesh)
+    wanted = np.where(marked[owner], np.minimum(size, 0.5 * mesh.cell_size[owner]), size)
+    halved = wanted < 0.75 * size
+    corners = np.stack(np.meshgrid(*[[-0.25, 0.25]] * 3, indexing="ij"), axis=-1).reshape(1, 8, 3)
+    children = (center[halved][:, None] + corners * size[halved, None, None]).reshape(-1, 3)
+    return Sizing(
+        np.concatenate([center[~halved], children]),
+        np.concatenate([wanted[~halved], np.repeat(wanted[halved], 8)]),
+    )
+
+
+def round_edges(mesh: Mesh) -> np.ndarray:
+    """[cell] whether air connects the two sides of a thin wall round its edge within the cell.
+
+    The wall in such a cell turns by more than 120 degrees. Both sides of a wing have one pressure there: no lift.
+    """
+    found = np.zeros(mesh.cells, bool)
+    found[mesh.wall_cell] = np.linalg.norm(mesh.wall_area, axis=1) < SHARP * mesh.wall_wetted
+    return found
+
+
+def octree_cubes(mesh: Mesh) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Cell, centre [cube, xyz], m, and edge, m, of the octree cubes that the cells lie in.
+
+    Raises:
+        InputError: a mesh that is no octree's.
+    """
+    if mesh.cell_cube_center is None:
+        raise InputError("mesh: an imported mesh has no octree to refine")
+    cell, center, size = np.arange(mesh.cells), mesh.cell_cube_center, mesh.cell_size
+    if mesh.merged_cubes is None:
+        return cell, center, size
+    more = mesh.merged_cubes
+    return (
+        np.concatenate([cell, more[:, 0].astype(np.int64)]),
+        np.concatenate([center, more[:, 1:4]]),
+        np.concatenate([size, more[:, 4]]),
+    )
+
+
+def finer_levels(sizing: Sizing | None, boxes: tuple[RefinementBox, ...], cell: float) -> int:
+    """How many levels below cells of `cell`, m, a sizing and boxes need.
+
+    Raises:
+        InputError: more than `MOST_FINER`.
+    """
+    smallest = min([box.cell for box in boxes], default=cell)
+    if sizing is not None and len(sizing.cell):
+        smallest = min(smallest, float(np.min(sizing.cell)))
+    finer = max(0, math.ceil(math.log2(cell / smallest) - 1e-6))
+    if finer > MOST_FINER:
+        raise InputError(
+            f"sizing: {smallest:.3g} m lies {finer} levels below the cell of {cell:.3g} m, at most {MOST_FINER} allowed"
+        )
+    return finer
+
+
+def split_cells(sizing: Sizing | None, grid: Grid) -> dict[int, Window]:
+    """By level, the cells that must be refined so that no cell is larger than wanted."""
+    if sizing is None or not len(sizing.cell):
+        return {}
+    place = (np.asarray(sizing.point, float) - grid.corner) / grid.cell
+    if grid.half:
+        place[:, 1] = np.abs(place[:, 1])
+    # the level below which a cell that holds the point must lie
+    level = np.floor(np.log2(np.asarray(sizing.cell, float) / grid.cell) + 1e-6).astype(np.int64) + 1
+    found = {}
+    for above in range(1, grid.levels + 1):
+        here = level == above
+        if here.any():
+            places = np.unique(np.floor(place[here] / 2**above).astype(np.int64), axis=0)
+            found[above] = window_of(places, grid.size * 2 ** (grid.levels - above))
+    return found
