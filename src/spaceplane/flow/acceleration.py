@@ -12,6 +12,7 @@ import numpy as np
 from numba import prange
 
 from spaceplane.flow.compiled import LANES, PRS, RHO, ROW, VX, VY, VZ, distinct, inlined, kernel
+from spaceplane.flow.gas import factor_near
 from spaceplane.flow.topology import Topology
 
 THINNEST = 1e-3
@@ -102,10 +103,13 @@ def record_difference(
 
 
 @inlined
-def cooling(u, v, w, r, p, gamma, ceiling):
-    """Factor on pressure and on the square of velocity that brings the total enthalpy down to `ceiling`, at most 1."""
+def cooling(u, v, w, r, p, factor, ceiling):
+    """Factor on pressure and on the square of velocity that brings the total enthalpy down to `ceiling`, at most 1.
+
+    The enthalpy is `factor` p/r.
+    """
     real = type(r)
-    enthalpy = gamma / (gamma - real(1)) * p / r + real(0.5) * (u * u + v * v + w * w)
+    enthalpy = factor * p / r + real(0.5) * (u * u + v * v + w * w)
     return min(real(1), ceiling / enthalpy)
 
 
@@ -121,7 +125,7 @@ def step_chunk(
     weights,
     slots,
     largest,
-    gamma,
+    gas,
     ceiling,
     pace,
     count,
@@ -164,8 +168,9 @@ def step_chunk(
             w = rows[i, VZ + n] + step[VZ + n]
             p = rows[i, PRS + n] + step[PRS + n]
             r = max(r, real(THINNEST))
-            p = max(p, real(THINNEST) / gamma)
-            cool = cooling(u, v, w, r, p, gamma, ceiling[n])
+            p = max(p, real(THINNEST) / gas.gamma)
+            factor_here = factor_near(gas, i, n, rows[i, RHO + n], rows[i, PRS + n], r, p)
+            cool = cooling(u, v, w, r, p, factor_here, ceiling[n])
             slow = math.sqrt(cool)
             step[RHO + n] = r - rows[i, RHO + n]
             step[VX + n] = slow * u - rows[i, VX + n]
@@ -179,7 +184,7 @@ def step_chunk(
 
 @kernel
 def apply_step(
-    topology, state, change, last_change, last_step, combined, weights, slots, largest, gamma, ceiling, pace, limited
+    topology, state, change, last_change, last_step, combined, weights, slots, largest, gas, ceiling, pace, limited
 ):
     """state += change - sum of weights[slot, 5 x lane] combined[:, slot], held within physical bounds cell by cell.
 
@@ -210,7 +215,7 @@ def apply_step(
             weights,
             slots,
             largest,
-            gamma,
+            gas,
             ceiling,
             pace,
             limited[chunk],

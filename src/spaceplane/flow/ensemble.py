@@ -9,6 +9,7 @@ from spaceplane.flow.acceleration import Anderson, apply_step
 from spaceplane.flow.compiled import LANES, ROW
 from spaceplane.flow.fluxes import FLUXES
 from spaceplane.flow.freestream import velocity
+from spaceplane.flow.gas import PerfectGas
 from spaceplane.flow.limiters import LIMITERS
 from spaceplane.flow.reconstruction import gradients
 from spaceplane.flow.residual import fluxes, pressures_on_wall
@@ -41,6 +42,7 @@ class Ensemble:
         state, residual, change: [cell, 5, lane]; passed: products that a sweep leaves to the next.
         gradient: [cell, axis, 5 x lane]; sensor: [cell, lane]; inverse: [cell, 25 x lane] inverse diagonal blocks.
         pace: [cell, lane] share of the lane's CFL number that a cell marches with.
+        gas: for the kernels.
     """
 
     def __init__(self, mesh: Mesh, topology: Topology, conditions: FlowConditions, settings: FlowSettings, order: int):
@@ -48,6 +50,7 @@ class Ensemble:
         self.settings, self.order = settings, order
         self.dtype = dtype = settings.dtype
         self.gamma = dtype(conditions.gamma)
+        self.gas = PerfectGas(self.gamma)
         self.wall_area = np.asarray(mesh.wall_area, dtype=np.float64) * mesh.body_wall[:, None]
         self.wetted = float(np.linalg.norm(self.wall_area, axis=1).sum()) or 1.0
         wall = mesh.wall_center[mesh.body_wall]
@@ -132,7 +135,7 @@ class Ensemble:
             self.far,
             self.frame,
             self.residual,
-            self.gamma,
+            self.gas,
             low_mach,
             self.stiffness(),
             self.order,
@@ -164,7 +167,7 @@ class Ensemble:
             cfl.astype(self.dtype),
             self.pace,
             again.astype(self.dtype),
-            self.gamma,
+            self.gas,
             self.stiffness(),
             self.inverse,
         )
@@ -181,7 +184,7 @@ class Ensemble:
                 self.inverse,
                 self.change,
                 self.passed,
-                self.gamma,
+                self.gas,
                 forward,
             )
         self.mirror(self.change)
@@ -219,7 +222,7 @@ class Ensemble:
             weights,
             self.anderson.used,
             self.dtype(largest),
-            self.gamma,
+            self.gas,
             self.ceiling,
             self.pace,
             limited,
@@ -236,7 +239,7 @@ class Ensemble:
     def wall_pressure(self) -> np.ndarray:
         """[wall, lane] pressure on the walls, from the state and gradients of the last `evaluate`."""
         out = np.empty((len(self.wall_area), LANES), self.dtype)
-        pressures_on_wall(self.topology, self.state, self.gradient, self.gamma, self.stiffness(), self.order, out)
+        pressures_on_wall(self.topology, self.state, self.gradient, self.gas, self.stiffness(), self.order, out)
         return out
 
     def forces(self) -> np.ndarray:
