@@ -61,6 +61,7 @@ def analyse(
     wall_temperature: options.WallTemperature = None,
     emissivity: options.Emissivity = None,
     transition_reynolds: options.TransitionReynolds = None,
+    gas: options.Gas = "perfect",
     allow_outside_limits: options.AllowOutside = False,
     json_file: options.JsonFile = None,
 ) -> int:
@@ -83,6 +84,7 @@ def analyse(
         controls=controls,
         steps=steps,
         increments=increments,
+        gas=options.gas_name(gas),
     )
     writable_folder(folder, "--out")
     writable_file(json_file, "--json")
