@@ -22,11 +22,14 @@ sys.path.insert(0, str(DOCS))
 
 import blocks  # noqa: E402  (beside this script)
 import fast_tier_blocks  # noqa: E402
+import real_gas_blocks  # noqa: E402
 import study_blocks  # noqa: E402
 
 PAGES = [*sorted(DOCS.rglob("*.md")), DOCS.parent / "README.md"]
 PATTERN = re.compile(r"(<!-- generated: ([a-z0-9 -]+) -->\n).*?(<!-- end generated -->)", re.DOTALL)
-BLOCKS: dict[str, Callable[[], str]] = blocks.BLOCKS | study_blocks.BLOCKS | fast_tier_blocks.BLOCKS
+BLOCKS: dict[str, Callable[[], str]] = (
+    blocks.BLOCKS | study_blocks.BLOCKS | fast_tier_blocks.BLOCKS | real_gas_blocks.BLOCKS
+)
 
 
 MISSING: dict[str, Path] = {}

@@ -229,3 +229,20 @@ def test_air_that_the_model_does_not_hold_for_is_refused(change, words):
 def test_the_table_reaches_beyond_every_stagnation_point_allowed():
     table = air_table()
     assert table.values[:, -1, 3].min() > 12_000.0
+
+
+def test_stand_off_of_a_sphere_follows_the_density_ratio():
+    """Seiff (NASA SP-24, 1962): 0.78 of the density ratio across the shock, on the radius, whatever the gas."""
+    mesh = sphere(20, 8, far=1.8)
+    solution = solve(mesh, in_air([10.0]), FlowSettings(coarse_levels=1))
+    assert solution.records[0].verdict != "failed"
+    pressure = THIN * GAS_CONSTANT * COLD
+    behind = behind_normal_shock(pressure, COLD, 10.0 * math.sqrt(1.4 * GAS_CONSTANT * COLD))
+    center = mesh.cell_center
+    line = (center[:, 0] < 0) & (np.hypot(center[:, 1], center[:, 2]) < 0.22 * np.abs(center[:, 0]))
+    radius, layer = np.unique(np.round(np.linalg.norm(center[line], axis=1), 6), return_inverse=True)
+    ratio = 1.4 * np.bincount(layer, solution.state[line, 4, 0].astype(float)) / np.bincount(layer)
+    middle = 0.5 * (1.0 + behind.pressure / pressure)
+    last = np.flatnonzero(ratio > middle)[-1]
+    found = np.interp(middle, ratio[[last + 1, last]], radius[[last + 1, last]]) - 1.0
+    assert found == pytest.approx(0.78 * THIN / behind.density, rel=0.08)
