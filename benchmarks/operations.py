@@ -27,6 +27,7 @@ from spaceplane.flow import acceleration, implicit, jacobian, reconstruction, re
 from spaceplane.flow.compiled import LANES
 from spaceplane.flow.ensemble import Ensemble
 from spaceplane.flow.fluxes import hllc, hlle
+from spaceplane.flow.gas import PerfectGas
 from spaceplane.flow.settings import FlowSettings
 from spaceplane.flow.solution import FlowConditions
 from spaceplane.flow.topology import prepare
@@ -85,6 +86,7 @@ class CountingEnsemble(Ensemble):
                 setattr(self, name, counted(value))
         for name in ("gamma", "smallness", "low", "high"):
             setattr(self, name, Counted(getattr(self, name)))
+        self.gas = PerfectGas(self.gamma)
         self.frame = self.frame._replace(
             **{name: counted(getattr(self.frame, name)) for name in ("spin", "drift", "still")}
         )

@@ -205,6 +205,26 @@ def test_friction_of_a_flow_goes_with_its_altitude(capfd, tmp_path, options, nam
 
 
 @pytest.mark.parametrize(
+    ("options", "naming"),
+    [
+        (["--gas", "equilibrium"], "--altitude: missing"),
+        (["--gas", "equilibirum", "--altitude", "50000"], "did you mean 'equilibrium'"),
+        (["--gas", "equilibrium", "--altitude", "50000", "--friction", "laminar"], "friction = 'laminar'"),
+        (["--gas", "equilibrium", "--altitude", "50000", "--mach", "40"], "ionises"),
+        (["--gas", "equilibrium", "--altitude", "50000", "--method", "newtonian"], "--gas"),
+    ],
+)
+def test_equilibrium_air_of_a_flow(capfd, tmp_path, options, naming):
+    body = tetrahedron(tmp_path / "t.stl")
+    mach = [] if "--mach" in options else ["--mach", 10]
+    refused(capfd, "flow", body, *mach, *FLOW, *options, naming=naming)
+
+
+def test_equilibrium_air_of_an_analysis_has_no_friction(capfd, tmp_path):
+    refused(capfd, "analyse", "horus-2b", "--gas", "equilibrium", "--out", tmp_path / "o", naming="friction")
+
+
+@pytest.mark.parametrize(
     ("text", "naming"),
     [
         ("shape: [1, 2", "vehicle.yaml"),

@@ -17,6 +17,7 @@ from spaceplane.analysis.flight import fly
 from spaceplane.analysis.found import Analysis, remarks
 from spaceplane.analysis.settings import AnalyseSettings
 from spaceplane.files import writable_folder
+from spaceplane.flow.settings import check
 from spaceplane.progress import Progress, silent
 from spaceplane.report.output import write
 from spaceplane.vehicle.controls import CONTROLS, ControlDeflections
@@ -41,7 +42,8 @@ def analyse(vehicle: Vehicle, settings: AnalyseSettings | None = None, progress:
     say = progress or silent
     points = settings.flight_points()
     symmetric = is_symmetric(settings.deflections)
-    plan = plan_conditions(list(points), settings.steps, symmetric, reference=vehicle.reference)
+    plan = plan_conditions(list(points), settings.steps, symmetric, reference=vehicle.reference, gas=settings.gas)
+    check(plan.conditions)
     aero = solve_aerodynamics(vehicle, settings, plan, points, say)
     base = aero.coefficients.isel(condition=[p.base for p in plan.points])
     say("flight dynamics", 0, 1, "")

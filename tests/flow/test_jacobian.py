@@ -16,6 +16,7 @@ from spaceplane.flow.topology import prepare
 from .structured import box
 
 GAMMA = 1.4
+HEAT = (GAMMA, GAMMA / (GAMMA - 1), GAMMA - 1, 0.0)
 STATE = np.array([1.3, 0.4, -0.7, 0.2, 0.9])
 NORMAL = np.array([0.6, -0.48, 0.64])
 
@@ -39,7 +40,7 @@ def differences(function, w, step=1e-6):
 
 
 def test_flux_increment_is_the_derivative_of_the_flux():
-    analytic = columns(lambda *d: jacobian.flux_increment.py_func(*STATE, *d, *NORMAL, GAMMA))
+    analytic = columns(lambda *d: jacobian.flux_increment.py_func(*STATE, *d, *NORMAL, HEAT))
     np.testing.assert_allclose(analytic, differences(lambda w: physical(w, NORMAL), STATE), atol=1e-8)
 
 
@@ -48,11 +49,11 @@ def test_dissipation_is_the_absolute_value_of_the_jacobian_but_for_total_enthalp
     a = np.sqrt(GAMMA * p / r)
     un = STATE[1:4] @ NORMAL
     mass = differences(conserved, STATE)
-    flux = columns(lambda *d: jacobian.flux_increment.py_func(*STATE, *d, *NORMAL, GAMMA)) @ np.linalg.inv(mass)
+    flux = columns(lambda *d: jacobian.flux_increment.py_func(*STATE, *d, *NORMAL, HEAT)) @ np.linalg.inv(mass)
     values, vectors = np.linalg.eig(flux)
     absolute = (vectors * np.abs(values)) @ np.linalg.inv(vectors)
     d = (abs(un), abs(un + a), abs(un - a))
-    analytic = columns(lambda *x: jacobian.dissipation_increment.py_func(r, u, v, w, a, *d, *x, *NORMAL, GAMMA))
+    analytic = columns(lambda *x: jacobian.dissipation_increment.py_func(r, u, v, w, a, *d, *x, *NORMAL, HEAT))
     np.testing.assert_allclose(analytic[:4], (np.real(absolute) @ mass)[:4], atol=1e-8)
     # Energy: the jump of total enthalpy is carried by |un|, the rest by the mass.
     enthalpy = differences(lambda q: np.array([GAMMA / (GAMMA - 1) * q[4] / q[0] + 0.5 * q[1:4] @ q[1:4]]), STATE)[0]
@@ -65,11 +66,11 @@ def test_linearised_first_order_flux_matches_the_flux(theta):
     """For a weak jump the flux is the mean of both sides less half the dissipation of the jump."""
     jump = 1e-5 * np.array([0.3, -0.8, 0.5, 0.9, -0.4])
     left, right = STATE - jump / 2, STATE + jump / 2
-    flux = np.array(blend.py_func(*left, *right, *NORMAL, GAMMA, 0.0, theta))
+    flux = np.array(blend.py_func(*left, *right, *NORMAL, GAMMA, GAMMA, 0.0, theta))
     a = np.sqrt(GAMMA * STATE[4] / STATE[0])
     un = STATE[1:4] @ NORMAL
     d = jacobian.wave_dissipation.py_func(un, a, theta)
-    spread = jacobian.dissipation_increment.py_func(*STATE[:4], a, *d, *jump, *NORMAL, GAMMA)
+    spread = jacobian.dissipation_increment.py_func(*STATE[:4], a, *d, *jump, *NORMAL, HEAT)
     predicted = 0.5 * (physical(left, NORMAL) + physical(right, NORMAL)) - 0.5 * np.array(spread)
     np.testing.assert_allclose(flux, predicted, atol=2e-9)
 
@@ -80,15 +81,15 @@ def test_blocks_hold_the_same_matrices_as_the_products():
     d = jacobian.wave_dissipation.py_func(un, a, 0.3)
     lane = 3
     block = np.zeros((25, LANES))
-    implicit.add_dissipation.py_func(block.reshape(-1), lane, 1.7, r, u, v, w, a, *d, *NORMAL, GAMMA)
-    product = columns(lambda *x: jacobian.dissipation_increment.py_func(r, u, v, w, a, *d, *x, *NORMAL, GAMMA))
+    implicit.add_dissipation.py_func(block.reshape(-1), lane, 1.7, r, u, v, w, a, *d, *NORMAL, HEAT)
+    product = columns(lambda *x: jacobian.dissipation_increment.py_func(r, u, v, w, a, *d, *x, *NORMAL, HEAT))
     np.testing.assert_allclose(block[:, lane].reshape(5, 5), 1.7 * product, atol=1e-12)
     block[:] = 0.0
-    implicit.add_flux.py_func(block.reshape(-1), lane, -0.6, r, u, v, w, p, *NORMAL, GAMMA)
-    product = columns(lambda *x: jacobian.flux_increment.py_func(*STATE, *x, *NORMAL, GAMMA))
+    implicit.add_flux.py_func(block.reshape(-1), lane, -0.6, r, u, v, w, p, *NORMAL, HEAT)
+    product = columns(lambda *x: jacobian.flux_increment.py_func(*STATE, *x, *NORMAL, HEAT))
     np.testing.assert_allclose(block[:, lane].reshape(5, 5), -0.6 * product, atol=1e-12)
     block[:] = 0.0
-    implicit.add_mass.py_func(block.reshape(-1), lane, 2.0, r, u, v, w, GAMMA)
+    implicit.add_mass.py_func(block.reshape(-1), lane, 2.0, r, u, v, w, HEAT)
     np.testing.assert_allclose(block[:, lane].reshape(5, 5), 2.0 * differences(conserved, STATE), atol=1e-8)
     assert not np.delete(block, lane, axis=1).any()
 
@@ -122,9 +123,9 @@ def test_sweeps_are_symmetric_gauss_seidel():
             j, n = t.other[e], t.normal[e]
             *middle, _ = mean = jacobian.face_average.py_func(*state[i], *state[j], *n, GAMMA)
             waves = jacobian.wave_dissipation.py_func(mean[5], mean[4], 0.3)
-            flux = columns(lambda *x, j=j, n=n: jacobian.flux_increment.py_func(*state[j], *x, *n, GAMMA))
+            flux = columns(lambda *x, j=j, n=n: jacobian.flux_increment.py_func(*state[j], *x, *n, HEAT))
             spread = columns(
-                lambda *x, m=middle, w=waves, n=n: jacobian.dissipation_increment.py_func(*m, *w, *x, *n, GAMMA)
+                lambda *x, m=middle, w=waves, n=n: jacobian.dissipation_increment.py_func(*m, *w, *x, *n, HEAT)
             )
             rows[i][j] = 0.5 * t.area[e] * (flux - spread)
     visited = np.concatenate([np.arange(t.block_cells[b], t.block_cells[b + 1]) for b in t.color_blocks])

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
 
+from spaceplane.environment.atmosphere import Ambient
 from spaceplane.errors import InputError
-from spaceplane.flow.solution import FlowConditions
+from spaceplane.flow.solution import PERFECT, FlowConditions
 from spaceplane.vehicle.properties import ReferenceLengths
 
 BASE = "base"
@@ -27,11 +29,13 @@ class AeroPoint(Protocol):
         mach: Mach number.
         alpha: angle of attack, rad.
         beta: sideslip, rad, wind from the right positive.
+        ambient: undisturbed air, which a gas that is not perfect needs.
     """
 
     mach: float
     alpha: float
     beta: float
+    ambient: Ambient
 
 
 @dataclass(frozen=True)
@@ -122,6 +126,7 @@ def plan(
     symmetric: bool = True,
     gamma: float = 1.4,
     reference: ReferenceLengths | None = None,
+    gas: str = PERFECT,
 ) -> ConditionPlan:
     """Expand flight points into the ensemble that gives their derivatives.
 
@@ -132,6 +137,7 @@ def plan(
             (at a base sideslip of zero only).
         gamma: ratio of specific heats.
         reference: chord, span and moment centre, SI, for steady rates; None leaves the damping derivatives out.
+        gas: name in `flow.solution.GASES`.
 
     Raises:
         InputError: a Mach number that is not positive and finite, or an angle that is not finite.
@@ -153,7 +159,10 @@ def plan(
                 minus = None if mirrored else ensemble.add(number, point, f"{quantity}-{mark}", {quantity: -size})
                 variations.append(Variation(quantity, size, plus, minus))
         plans.append(PointPlan(base, tuple(variations)))
-    return ConditionPlan(ensemble.conditions(gamma), tuple(ensemble.labels), np.array(ensemble.owner), tuple(plans))
+    streams = ensemble.conditions(gamma)
+    if gas != PERFECT:
+        streams = in_air(streams, gas, [points[number].ambient for number in ensemble.owner])
+    return ConditionPlan(streams, tuple(ensemble.labels), np.array(ensemble.owner), tuple(plans))
 
 
 class _Ensemble:
@@ -191,6 +200,12 @@ def turning(conditions: FlowConditions, reduced: np.ndarray, reference: Referenc
     lengths = np.array([reference.span, reference.chord, reference.span])
     rates = np.asarray(reduced, dtype=float) * 2.0 * conditions.mach[:, None] / lengths
     return replace(conditions, rates=rates, center=tuple(float(v) for v in reference.moment_center))
+
+
+def in_air(conditions: FlowConditions, gas: str, ambient: Sequence[Ambient]) -> FlowConditions:
+    """The conditions in a gas that is not perfect, with the undisturbed air of each."""
+    density, pressure = (np.array([getattr(air, name) for air in ambient]) for name in ("density", "pressure"))
+    return replace(conditions, gas=gas, density=density, pressure=pressure)
 
 
 def product(machs: list[float], alphas: list[float], betas: list[float], gamma: float = 1.4) -> FlowConditions:

@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 import xarray as xr
 
-from spaceplane.aero.conditions import product
+from spaceplane.aero.conditions import in_air, product
 from spaceplane.aero.increments.add import WITH_SOURCES, integrate_with
-from spaceplane.aero.increments.settings import Air, IncrementSettings
+from spaceplane.aero.increments.settings import Air, IncrementSettings, require_no_friction
 from spaceplane.aero.integrate import BY_SOURCE, COEFFICIENTS, PRESSURES, TOTAL, Reference
 from spaceplane.aero.uncertainty.accuracy import Accuracy, Refined, Trial, at_wall_cell, refine, relative
 from spaceplane.aero.uncertainty.companion import RATIO, Companion, coarser
@@ -20,8 +20,8 @@ from spaceplane.environment.atmosphere import Ambient
 from spaceplane.errors import InputError
 from spaceplane.flow.adapt import solve_adapted
 from spaceplane.flow.freestream import velocity
-from spaceplane.flow.settings import FlowSettings
-from spaceplane.flow.solution import FlowConditions, Solution
+from spaceplane.flow.settings import FlowSettings, check
+from spaceplane.flow.solution import PERFECT, FlowConditions, Solution
 from spaceplane.flow.solve import solve
 from spaceplane.mesh.generate import generate
 from spaceplane.mesh.mesh import Mesh
@@ -69,6 +69,7 @@ def run_flow(
     ambient: Ambient | None = None,
     uncertainty: str = ITERATION,
     adapt: int = 0,
+    gas: str = PERFECT,
 ) -> FlowCase:
     """Mesh a body and solve every combination of Mach number, angle of attack and sideslip in one ensemble.
 
@@ -84,16 +85,18 @@ def run_flow(
         rates: steady roll, pitch and yaw rate about the moment centre in every condition, rad/s on the speed of sound
             in m/s, 1/m.
         increments: viscous increments; none when None.
-        ambient: undisturbed air of every condition, for skin friction.
+        ambient: undisturbed air of every condition, for skin friction and equilibrium air.
         uncertainty: "mesh" solves everything again on a coarser companion mesh, and the records hold
             `coefficient_errors` with the uncertainty by the mesh; "iteration" leaves that out.
         adapt: passes that adapt the mesh to the flow, see `solve_adapted`; not together with uncertainty "mesh".
+        gas: name in `flow.solution.GASES`.
 
     Raises:
         InputError: a bad condition or body, adaptation without a number of cells, rates that move some point of the
-            body at more than half the flight speed, or skin friction without air.
+            body at more than half the flight speed, skin friction or equilibrium air without air, or both together.
     """
     conditions = _turning(product(list(machs), list(alphas), list(betas)), rates, reference, body.points)
+    conditions = _gas(conditions, gas, increments, ambient)
     viscous = _viscous(increments, ambient, len(conditions))
     if adapt and uncertainty == MESH:
         raise InputError(f"adapt: {adapt}, not allowed with uncertainty 'mesh': an adapted mesh has no companion")
@@ -123,12 +126,14 @@ def run_to_accuracy(
     rates: tuple[float, float, float] = (0.0, 0.0, 0.0),
     increments: IncrementSettings | None = None,
     ambient: Ambient | None = None,
+    gas: str = PERFECT,
     tell: Callable[[Trial], None] | None = None,
 ) -> tuple[FlowCase, Refined]:
     """As `run_flow`, on meshes made finer until the coefficients are as certain as asked; the last mesh's flow.
 
     Args:
-        body, machs, alphas, betas, reference, flow_settings, progress, rates, increments, ambient: as for `run_flow`.
+        body, machs, alphas, betas, reference, flow_settings: as for `run_flow`.
+        progress, rates, increments, ambient, gas: as for `run_flow`.
         mesh_settings: how to mesh; the wall cell is chosen here.
         accuracy: what is asked, and the most cells; see `refine`.
         tell: called with each mesh once it is solved.
@@ -141,6 +146,7 @@ def run_to_accuracy(
         InputError: as `run_flow`, or fewer cells allowed than two meshes of this body have.
     """
     conditions = _turning(product(list(machs), list(alphas), list(betas)), rates, reference, body.points)
+    conditions = _gas(conditions, gas, increments, ambient)
     viscous = _viscous(increments, ambient, len(conditions))
     last: FlowCase | None = None
     number = 1
@@ -192,6 +198,7 @@ def run_on_mesh(
     rates: tuple[float, float, float] = (0.0, 0.0, 0.0),
     increments: IncrementSettings | None = None,
     ambient: Ambient | None = None,
+    gas: str = PERFECT,
 ) -> FlowCase:
     """Solve every combination of Mach number, angle of attack and sideslip on a mesh that is there already.
 
@@ -202,7 +209,7 @@ def run_on_mesh(
         betas: sideslip angles, rad.
         reference: area, chord, span and moment centre, SI.
         flow_settings: how to solve.
-        progress, rates, increments, ambient: as for `run_flow`.
+        progress, rates, increments, ambient, gas: as for `run_flow`.
 
     Raises:
         InputError: as `run_flow`, or a free stream that goes through a plane of symmetry, or rates beside one.
@@ -212,6 +219,7 @@ def run_on_mesh(
     if any(rates) and not mesh.body_wall.all():
         raise InputError(f"rates: {rates}, not allowed on a mesh with planes of symmetry")
     _require_along_symmetry(mesh, conditions)
+    conditions = _gas(conditions, gas, increments, ambient)
     viscous = _viscous(increments, ambient, len(conditions))
     return _told(solve(mesh, conditions, flow_settings, progress), reference, *viscous)
 
@@ -227,6 +235,18 @@ def _turning(
             f"rates: a point of the body would move at {share:.2g} of the flight speed, at most {FASTEST_POINT:g}"
         )
     return replace(conditions, rates=np.tile(rates, (len(conditions), 1)), center=reference.moment_center)
+
+
+def _gas(
+    conditions: FlowConditions, gas: str, increments: IncrementSettings | None, ambient: Ambient | None
+) -> FlowConditions:
+    """The conditions in `gas`, refused here where the solver would refuse them after the mesh is made."""
+    if gas == PERFECT:
+        return conditions
+    require_no_friction(gas, increments)
+    if ambient is None:
+        raise InputError(f"gas = {gas!r}: needs the altitude")
+    return check(in_air(conditions, gas, [ambient] * len(conditions)))
 
 
 def _viscous(

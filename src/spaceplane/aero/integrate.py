@@ -240,6 +240,7 @@ def _dataset(
         "b_ref_m": float(reference.span),
         "moment_center_m": [float(v) for v in reference.moment_center],
         "gamma": float(conditions.gamma),
+        "gas": conditions.gas,
     }
     return xr.Dataset(variables, coordinates, attributes)
 

@@ -8,12 +8,13 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from spaceplane.aero.conditions import DerivativeSteps
-from spaceplane.aero.increments.settings import VISCOUS, IncrementSettings
+from spaceplane.aero.increments.settings import VISCOUS, IncrementSettings, require_no_friction
 from spaceplane.aero.uncertainty.settings import LOOSEST, MESH, SOURCES, TIGHTEST
 from spaceplane.dynamics.flightpoint import TAEM_MACH, FlightPoint, taem_point
 from spaceplane.dynamics.linearise import FORMS
 from spaceplane.errors import InputError
 from spaceplane.flow.settings import FlowSettings
+from spaceplane.flow.solution import GASES, PERFECT
 from spaceplane.mesh.settings import MeshSettings, RefinementBox
 from spaceplane.plain import override, plain
 from spaceplane.qualities import limits
@@ -84,6 +85,7 @@ class AnalyseSettings:
         steps: steps of the stability derivatives.
         mesh: how to mesh; the default, a wall cell of 0.25 m, is meant to answer in about two minutes on two cores.
         flow: how to solve.
+        gas: perfect, or equilibrium air at each point's altitude, without skin friction.
         increments: viscous increments over the inviscid coefficients: turbulent skin friction and a correlated base.
         uncertainty: "mesh" solves everything again on a coarser companion mesh, for the uncertainty of coefficients and
             derivatives by the mesh (a third more time); "iteration" leaves that out.
@@ -106,6 +108,7 @@ class AnalyseSettings:
     steps: DerivativeSteps = field(default_factory=DerivativeSteps)
     mesh: MeshSettings = field(default_factory=lambda: MeshSettings(wall_cell=0.25))
     flow: FlowSettings = field(default_factory=FlowSettings)
+    gas: str = PERFECT
     increments: IncrementSettings = VISCOUS
     uncertainty: str = MESH
     accuracy: float | None = None
@@ -135,9 +138,11 @@ class AnalyseSettings:
             ("vehicle_class", self.vehicle_class, limits.CLASSES),
             ("category", self.category, limits.CATEGORIES),
             ("uncertainty", self.uncertainty, SOURCES),
+            ("gas", self.gas, GASES),
         ):
             if value not in allowed:
                 raise InputError(f"{name} = {value!r}: allowed are {', '.join(allowed)}")
+        require_no_friction(self.gas, self.increments)
 
     @classmethod
     def from_mapping(cls, values: Mapping) -> AnalyseSettings:

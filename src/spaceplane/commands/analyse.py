@@ -63,6 +63,7 @@ def analyse(
     wall_temperature: options.WallTemperature = None,
     emissivity: options.Emissivity = None,
     transition_reynolds: options.TransitionReynolds = None,
+    gas: options.Gas = "perfect",
     allow_outside_limits: options.AllowOutside = False,
     json_file: options.JsonFile = None,
 ) -> int:
@@ -89,6 +90,7 @@ def analyse(
         increments=increments,
         uncertainty=stated,
         accuracy=asked,
+        gas=options.gas_name(gas),
     )
     writable_folder(folder, "--out")
     writable_file(json_file, "--json")

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from spaceplane.vehicle.properties import ReferenceLengths
     from spaceplane.vehicle.surface import Surface
 
-EULER = "euler"
+EULER, PERFECT = "euler", "perfect"
 LIKELY_MESHES = 4  # on the way to an accuracy, for the progress bar
 EXAMPLE = (
     "Example: spaceplane flow cone.stl --mach 1.5,3 --alpha 0,5 --area 1 --length 2 --span 1 --moment-center 0,0,0 "
@@ -104,8 +104,9 @@ def flow(
     emissivity: options.Emissivity = None,
     transition_reynolds: options.TransitionReynolds = None,
     altitude: Annotated[
-        str | None, typer.Option("--altitude", metavar="M", help="Altitude of the air, for friction and rates.")
+        str | None, typer.Option("--altitude", metavar="M", help="Altitude of the air, for friction, rates and --gas.")
     ] = None,
+    gas: options.Gas = PERFECT,
     json_file: options.JsonFile = None,
     vtu: Annotated[Path | None, typer.Option("--vtu", metavar="FILE", help="Write the flow for ParaView.")] = None,
     vtp: Annotated[
@@ -129,7 +130,8 @@ def flow(
     center = tuple(numbers("--moment-center", moment_center, "m", 3))
     solver_precision = options.precision(precision)
     increments = options.increment_settings(friction, base, wall_temperature, emissivity, transition_reynolds)
-    ambient = _ambient(altitude, friction, any(turning))
+    gas = options.gas_name(gas)
+    ambient = _ambient(altitude, friction, any(turning), gas)
     roles = {"wall": wall, "far": far, "symmetry": symmetry}
     mesh_options = {"--cell": cell, "--cells": cells, "--domain": domain, "--accuracy": accuracy}
     mesh_options["--uncertainty"] = uncertainty if uncertainty == "mesh" else None
@@ -152,6 +154,7 @@ def flow(
         given["--rates"] = rates if any(turning) else None
         given["--friction"] = friction if friction != "off" else None
         given["--base"] = base if base != "inviscid" else None
+        given["--gas"] = gas if gas != PERFECT else None
         given["--precision"] = precision if solver_precision != "single" else None
         _refuse_options(given, f"allowed with --method {EULER} only")
         return _inclination(body, method, (machs, alphas, betas), reference, json_file)
@@ -167,7 +170,7 @@ def flow(
     if passes:
         beside = {"--accuracy": accuracy, "--uncertainty": uncertainty if stated == "mesh" else None}
         _refuse_options(beside, f"not allowed with --adapt {passes}: an adapted mesh has no coarser companion")
-    extra = {"rates": on_sound, "increments": increments, "ambient": ambient}
+    extra = {"rates": on_sound, "increments": increments, "ambient": ambient, "gas": gas}
     imported: Imported | None = None
     if mesh_file is None:
         from spaceplane.vehicle.stl import read_stl
@@ -254,12 +257,16 @@ def _check_mesh_file(mesh_file: Path, given: dict[str, object], method: str) -> 
     existing_file(mesh_file, "a .su2 or .msh file")
 
 
-def _ambient(altitude: str | None, friction: str, turns: bool) -> Ambient:
-    """The air at the altitude, which friction and rates need and nothing else does; sea level for rates without one."""
-    if altitude is None and friction != "off":
-        raise InputError(f"--altitude: missing, --friction {friction} needs it")
-    if altitude is not None and friction == "off" and not turns:
-        raise InputError(f"--altitude: {altitude}, goes with --friction or --rates")
+def _ambient(altitude: str | None, friction: str, turns: bool, gas: str) -> Ambient:
+    """The air at the altitude, which friction, rates and equilibrium air need and nothing else does.
+
+    Sea level for rates without one.
+    """
+    for option, value, off in (("--friction", friction, "off"), ("--gas", gas, PERFECT)):
+        if altitude is None and value != off:
+            raise InputError(f"--altitude: missing, {option} {value} needs it")
+    if altitude is not None and friction == "off" and gas == PERFECT and not turns:
+        raise InputError(f"--altitude: {altitude}, goes with --friction, --rates or --gas equilibrium")
     from spaceplane.environment.atmosphere import us1976
 
     return us1976(0.0 if altitude is None else number("--altitude", altitude, "m"))

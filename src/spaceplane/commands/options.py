@@ -49,6 +49,14 @@ Adapt = Annotated[
 Precision = Annotated[
     str, typer.Option("--precision", metavar="fp32|fp64", help="Floating-point precision of the flow solver.")
 ]
+Gas = Annotated[
+    str,
+    typer.Option(
+        "--gas",
+        metavar="perfect|equilibrium",
+        help="Constant specific heats, or air in chemical equilibrium (hypersonic).",
+    ),
+]
 JsonFile = Annotated[
     Path | None, typer.Option("--json", metavar="FILE", help="Write the result as JSON; - for standard output.")
 ]
@@ -94,6 +102,19 @@ TransitionReynolds = Annotated[
 ]
 
 PRECISIONS = {"fp32": "single", "single": "single", "fp64": "double", "double": "double"}
+
+
+def gas_name(gas: str) -> str:
+    """The gas of this name.
+
+    Raises:
+        InputError: an unknown name.
+    """
+    from spaceplane.flow.solution import GASES
+
+    if gas not in GASES:
+        raise InputError("--gas: " + unknown_name("gas", gas, GASES))
+    return gas
 
 
 def load_vehicle(vehicle: str, changes: list[str] | None, allow_outside_limits: bool) -> Vehicle:

@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+import numpy as np
 from scipy.optimize import brentq
 
 from spaceplane.environment import constants as c
@@ -49,6 +50,7 @@ O = Species(  # noqa: E741
     15.9994, 0.0, 0.0, ((5, 0.0), (3, 228.0), (1, 326.0), (5, 22_830.0), (1, 48_620.0)), _DISSOCIATION_O2 / 2
 )
 _MASS_PER_MOLE = NITROGEN_SHARE * 28.0134e-3 + (1 - NITROGEN_SHARE) * 31.9988e-3  # kg/mol of cold mixture
+GAS_CONSTANT = c.BOLTZMANN / ATOMIC_MASS_UNIT * 1e-3 / _MASS_PER_MOLE  # J/(kg K), of cold mixture
 
 
 @dataclass(frozen=True)
@@ -62,6 +64,7 @@ class AirState:
         enthalpy: J/kg, zero at 0 K.
         density: kg/m3.
         oxygen_dissociated: share of the oxygen that is atomic.
+        entropy: J/(kg K).
     """
 
     temperature: float
@@ -70,15 +73,17 @@ class AirState:
     enthalpy: float
     density: float
     oxygen_dissociated: float
+    entropy: float
 
 
 def equilibrium(temperature: float, pressure: float) -> AirState:
     """Composition, density and enthalpy at a temperature, K, and pressure, Pa."""
     T, p = temperature, pressure
     # Square roots of the equilibrium constants: p_O = a x, p_N = b y, p_NO = k x y with x2 = p_O2, y2 = p_N2.
-    a = math.exp(_log_function(O, T) - 0.5 * _log_function(O2, T))
-    b = math.exp(_log_function(N, T) - 0.5 * _log_function(N2, T))
-    k = math.exp(_log_function(NO, T) - 0.5 * (_log_function(N2, T) + _log_function(O2, T)))
+    log = {species: float(_log_function(species, T)) for species in (N2, O2, NO, N, O)}
+    a = math.exp(log[O] - 0.5 * log[O2])
+    b = math.exp(log[N] - 0.5 * log[N2])
+    k = math.exp(log[NO] - 0.5 * (log[N2] + log[O2]))
 
     def nitrogen_root(x: float) -> float:
         """y that makes the partial pressures add to p."""
@@ -98,10 +103,41 @@ def equilibrium(temperature: float, pressure: float) -> AirState:
     partial = {N2: y * y, O2: x * x, NO: k * x * y, N: b * y, O: a * x}
     cold = (2 * partial[N2] + 2 * partial[O2] + 2 * partial[NO] + partial[N] + partial[O]) / 2
     factor = p / cold
-    energy = sum(share / cold * _enthalpy(species, T) for species, share in partial.items())
-    gas_constant = c.BOLTZMANN / ATOMIC_MASS_UNIT * 1e-3 / _MASS_PER_MOLE
+    enthalpy = {species: float(_enthalpy(species, T)) for species in partial}
+    energy = sum(share / cold * enthalpy[species] for species, share in partial.items())
+    # Entropy is (h - g)/T of each species at its own partial pressure; what is not there has none.
+    entropy = sum(
+        share / cold * (enthalpy[species] / T - math.log(share) + log[species])
+        for species, share in partial.items()
+        if share > 0
+    )
     oxygen = 2 * partial[O2] + partial[NO] + partial[O]
-    return AirState(T, p, factor, gas_constant * energy, p / (factor * gas_constant * T), partial[O] / oxygen)
+    density = p / (factor * GAS_CONSTANT * T)
+    return AirState(T, p, factor, GAS_CONSTANT * energy, density, partial[O] / oxygen, GAS_CONSTANT * entropy)
+
+
+def heat_at_density(temperature: np.ndarray, density: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(compressibility factor, enthalpy J/kg) at temperatures, K, and densities, kg/m3, of arrays of one shape."""
+    T = np.asarray(temperature, dtype=float)
+    log = {species: _log_function(species, T) for species in (N2, O2, NO, N, O)}
+    a, b = np.exp(log[O] - 0.5 * log[O2]), np.exp(log[N] - 0.5 * log[N2])
+    k = np.exp(log[NO] - 0.5 * (log[N2] + log[O2]))
+    cold = np.asarray(density, dtype=float) * GAS_CONSTANT * T
+    nitrogen, oxygen = 2 * NITROGEN_SHARE * cold, 2 * (1 - NITROGEN_SHARE) * cold
+
+    def root(linear: np.ndarray, constant: np.ndarray) -> np.ndarray:
+        """Positive z of 2 z^2 + linear z = constant."""
+        return 2 * constant / (linear + np.sqrt(linear * linear + 8 * constant))
+
+    # The two elements are coupled by NO alone, which never holds more than a third of the oxygen: this contracts.
+    x = root(a, oxygen)
+    for _ in range(40):
+        y = root(b + k * x, nitrogen)
+        x = root(a + k * y, oxygen)
+    partial = {N2: y * y, O2: x * x, NO: k * x * y, N: b * y, O: a * x}
+    factor = sum(partial.values()) / cold
+    enthalpy = sum(share * _enthalpy(species, T) for species, share in partial.items()) / cold
+    return factor, GAS_CONSTANT * enthalpy
 
 
 def behind_normal_shock(pressure: float, temperature: float, speed: float) -> AirState:
@@ -125,19 +161,37 @@ def behind_normal_shock(pressure: float, temperature: float, speed: float) -> Ai
     return state(ratio)
 
 
-def _log_function(species: Species, T: float) -> float:
+def stagnation(pressure: float, temperature: float, speed: float) -> AirState:
+    """Equilibrium air at a blunt body's stagnation point: through a normal shock, then brought to rest isentropically.
+
+    Args:
+        pressure: ahead of the shock, Pa.
+        temperature: ahead of the shock, K.
+        speed: of the air towards the shock, m/s; supersonic.
+    """
+    behind = behind_normal_shock(pressure, temperature, speed)
+    total = equilibrium(temperature, pressure).enthalpy + speed**2 / 2
+
+    def state(p: float) -> AirState:
+        T = brentq(lambda T: equilibrium(T, p).enthalpy - total, behind.temperature, HIGHEST_TEMPERATURE, xtol=1e-6)
+        return equilibrium(T, p)
+
+    return state(brentq(lambda p: state(p).entropy - behind.entropy, behind.pressure, 2 * behind.pressure, rtol=1e-8))
+
+
+def _log_function(species: Species, T: float | np.ndarray) -> float | np.ndarray:
     """Logarithm of the partition function per volume times kT (Pa), with the energy of formation."""
-    translation = 1.5 * math.log(2 * math.pi * species.mass * ATOMIC_MASS_UNIT * c.BOLTZMANN * T / c.PLANCK**2)
-    inner = math.log(sum(g * math.exp(-level / T) for g, level in species.levels))
+    translation = 1.5 * np.log(2 * math.pi * species.mass * ATOMIC_MASS_UNIT * c.BOLTZMANN * T / c.PLANCK**2)
+    inner = np.log(sum(g * np.exp(-level / T) for g, level in species.levels))
     if species.rotation:
-        inner += math.log(T / species.rotation) - math.log1p(-math.exp(-species.vibration / T))
-    return translation + inner + math.log(c.BOLTZMANN * T) - species.formation / T
+        inner = inner + np.log(T / species.rotation) - np.log1p(-np.exp(-species.vibration / T))
+    return translation + inner + np.log(c.BOLTZMANN * T) - species.formation / T
 
 
-def _enthalpy(species: Species, T: float) -> float:
+def _enthalpy(species: Species, T: float | np.ndarray) -> float | np.ndarray:
     """Enthalpy of one mole over the gas constant, K."""
-    weights = [g * math.exp(-level / T) for g, level in species.levels]
+    weights = [g * np.exp(-level / T) for g, level in species.levels]
     total = 2.5 * T + sum(w * level for w, (_, level) in zip(weights, species.levels, strict=True)) / sum(weights)
     if species.rotation:
-        total += T + species.vibration / math.expm1(species.vibration / T)
+        total = total + T + species.vibration / np.expm1(species.vibration / T)
     return total + species.formation

@@ -19,7 +19,7 @@ VIBRATION_TEMPERATURE = 800.0
 IONISATION_TEMPERATURE = 9_000.0
 
 # Fastest shock, m/s, for which the equilibrium model is asked: beyond it ionisation rules.
-_FASTEST = 8_500.0
+FASTEST = 8_500.0
 
 
 @dataclass(frozen=True)
@@ -74,7 +74,7 @@ def assess_validity(mach: float, ambient: Ambient, length: float) -> Validity:
         # Weak shocks heat the air too little for any chemistry; the iteration would only waste time.
         if ideal > VIBRATION_TEMPERATURE:
             shocked = behind_normal_shock(
-                ambient.pressure, ambient.temperature, min(mach * ambient.speed_of_sound, _FASTEST)
+                ambient.pressure, ambient.temperature, min(mach * ambient.speed_of_sound, FASTEST)
             )
             factor, temperature = shocked.compressibility_factor, shocked.temperature
             ahead = equilibrium(ambient.temperature, ambient.pressure)
@@ -95,7 +95,7 @@ def assess_validity(mach: float, ambient: Ambient, length: float) -> Validity:
             f"{temperature:.0f} K behind a normal shock: vibration lowers the ratio of specific heats, shock density "
             f"ratio {100 * error:.1f} % above the ideal gas's"
         )
-    if temperature > IONISATION_TEMPERATURE or mach * ambient.speed_of_sound > _FASTEST:
+    if temperature > IONISATION_TEMPERATURE or mach * ambient.speed_of_sound > FASTEST:
         notes.append("ionisation, which the equilibrium model leaves out, matters here")
     return Validity(number, factor, temperature, ideal, error, continuum, ideal_gas, tuple(notes))
 

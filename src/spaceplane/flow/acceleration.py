@@ -13,6 +13,7 @@ from numba import prange
 
 from spaceplane.flow.bounds import bounded
 from spaceplane.flow.compiled import LANES, PRS, RHO, ROW, VX, VY, VZ, distinct, inlined, kernel
+from spaceplane.flow.gas import factor_near
 from spaceplane.flow.topology import Topology
 
 SLOWEST = 0.02
@@ -99,10 +100,13 @@ def record_difference(
 
 
 @inlined
-def cooling(u, v, w, r, p, gamma, ceiling):
-    """Factor on pressure and on the square of velocity that brings the total enthalpy down to `ceiling`, at most 1."""
+def cooling(u, v, w, r, p, factor, ceiling):
+    """Factor on pressure and on the square of velocity that brings the total enthalpy down to `ceiling`, at most 1.
+
+    The enthalpy is `factor` p/r.
+    """
     real = type(r)
-    enthalpy = gamma / (gamma - real(1)) * p / r + real(0.5) * (u * u + v * v + w * w)
+    enthalpy = factor * p / r + real(0.5) * (u * u + v * v + w * w)
     return min(real(1), ceiling / enthalpy)
 
 
@@ -118,7 +122,7 @@ def step_chunk(
     weights,
     slots,
     largest,
-    gamma,
+    gas,
     ceiling,
     pace,
     count,
@@ -155,13 +159,14 @@ def step_chunk(
         for m in range(ROW):
             step[m] = factor[m] * step[m] if factor[m] > zero else zero
         for n in range(LANES):
-            dr, dp = bounded(rows[i, RHO + n], rows[i, PRS + n], step[RHO + n], step[PRS + n], gamma)
+            dr, dp = bounded(rows[i, RHO + n], rows[i, PRS + n], step[RHO + n], step[PRS + n], gas.gamma)
             r = rows[i, RHO + n] + dr
             u = rows[i, VX + n] + step[VX + n]
             v = rows[i, VY + n] + step[VY + n]
             w = rows[i, VZ + n] + step[VZ + n]
             p = rows[i, PRS + n] + dp
-            cool = cooling(u, v, w, r, p, gamma, ceiling[n])
+            factor_here = factor_near(gas, i, n, rows[i, RHO + n], rows[i, PRS + n], r, p)
+            cool = cooling(u, v, w, r, p, factor_here, ceiling[n])
             slow = math.sqrt(cool)
             step[RHO + n] = r - rows[i, RHO + n]
             step[VX + n] = slow * u - rows[i, VX + n]
@@ -175,7 +180,7 @@ def step_chunk(
 
 @kernel
 def apply_step(
-    topology, state, change, last_change, last_step, combined, weights, slots, largest, gamma, ceiling, pace, limited
+    topology, state, change, last_change, last_step, combined, weights, slots, largest, gas, ceiling, pace, limited
 ):
     """state += change - sum of weights[slot, 5 x lane] combined[:, slot], held within physical bounds cell by cell.
 
@@ -207,7 +212,7 @@ def apply_step(
             weights,
             slots,
             largest,
-            gamma,
+            gas,
             ceiling,
             pace,
             limited[chunk],

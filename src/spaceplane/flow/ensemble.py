@@ -7,14 +7,16 @@ import numpy as np
 from spaceplane.flow import implicit
 from spaceplane.flow.acceleration import Anderson, apply_step
 from spaceplane.flow.compiled import LANES, ROW
+from spaceplane.flow.equilibrium import Heating
 from spaceplane.flow.fluxes import FLUXES
 from spaceplane.flow.freestream import velocity
+from spaceplane.flow.gas import PerfectGas
 from spaceplane.flow.limiters import LIMITERS
 from spaceplane.flow.reconstruction import gradients
 from spaceplane.flow.residual import fluxes, pressures_on_wall
 from spaceplane.flow.rotation import frame_of
 from spaceplane.flow.settings import FlowSettings
-from spaceplane.flow.solution import FlowConditions
+from spaceplane.flow.solution import EQUILIBRIUM, FlowConditions
 from spaceplane.flow.symmetry import symmetrise
 from spaceplane.flow.topology import Topology
 from spaceplane.mesh.mesh import Mesh
@@ -41,6 +43,7 @@ class Ensemble:
         state, residual, change: [cell, 5, lane]; passed: products that a sweep leaves to the next.
         gradient: [cell, axis, 5 x lane]; sensor: [cell, lane]; inverse: [cell, 25 x lane] inverse diagonal blocks.
         pace: [cell, lane] share of the lane's CFL number that a cell marches with.
+        gas: for the kernels; `heating` keeps it up to date, None for the perfect gas.
     """
 
     def __init__(self, mesh: Mesh, topology: Topology, conditions: FlowConditions, settings: FlowSettings, order: int):
@@ -48,6 +51,8 @@ class Ensemble:
         self.settings, self.order = settings, order
         self.dtype = dtype = settings.dtype
         self.gamma = dtype(conditions.gamma)
+        self.heating = Heating(mesh.cells, dtype) if conditions.gas == EQUILIBRIUM else None
+        self.gas = PerfectGas(self.gamma) if self.heating is None else self.heating.gas
         self.wall_area = np.asarray(mesh.wall_area, dtype=np.float64) * mesh.body_wall[:, None]
         self.wetted = float(np.linalg.norm(self.wall_area, axis=1).sum()) or 1.0
         wall = mesh.wall_center[mesh.body_wall]
@@ -87,14 +92,18 @@ class Ensemble:
         self.anderson.forget(lane, self.free)
 
     def scale(self, lanes: np.ndarray) -> None:
-        """Set dynamic pressure, rotation and ceiling of total enthalpy in these lanes, by the conditions they hold."""
+        """Set dynamic pressure, rotation, heat and ceiling of total enthalpy in these lanes, by their conditions."""
         self.frame = frame_of(self.conditions, self.lanes, self.dtype)
+        if self.heating is not None:
+            self.heating.scale(self.conditions.take(self.lanes), self.free)
         mach = self.conditions.mach[self.lanes[lanes]]
         self.per_pressure[lanes] = 2.0 / mach**2
         self.ceiling[lanes] = HIGHEST_ENTHALPY * (1.0 / (self.conditions.gamma - 1.0) + 0.5 * mach**2)
 
     def evaluate(self) -> np.ndarray:
         """Compute the residual of the present state; its norm [lane], fp64."""
+        if self.heating is not None:
+            self.heating.fill(self.state)
         self.reconstruct()
         self.balance()
         sums = np.empty((len(self.topology.chunk_cells) - 1, LANES))
@@ -132,7 +141,7 @@ class Ensemble:
             self.far,
             self.frame,
             self.residual,
-            self.gamma,
+            self.gas,
             low_mach,
             self.stiffness(),
             self.order,
@@ -164,7 +173,7 @@ class Ensemble:
             cfl.astype(self.dtype),
             self.pace,
             again.astype(self.dtype),
-            self.gamma,
+            self.gas,
             self.stiffness(),
             self.inverse,
         )
@@ -181,7 +190,7 @@ class Ensemble:
                 self.inverse,
                 self.change,
                 self.passed,
-                self.gamma,
+                self.gas,
                 forward,
             )
         self.mirror(self.change)
@@ -219,7 +228,7 @@ class Ensemble:
             weights,
             self.anderson.used,
             self.dtype(largest),
-            self.gamma,
+            self.gas,
             self.ceiling,
             self.pace,
             limited,
@@ -236,7 +245,7 @@ class Ensemble:
     def wall_pressure(self) -> np.ndarray:
         """[wall, lane] pressure on the walls, from the state and gradients of the last `evaluate`."""
         out = np.empty((len(self.wall_area), LANES), self.dtype)
-        pressures_on_wall(self.topology, self.state, self.gradient, self.gamma, self.stiffness(), self.order, out)
+        pressures_on_wall(self.topology, self.state, self.gradient, self.gas, self.stiffness(), self.order, out)
         return out
 
     def forces(self) -> np.ndarray:

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from spaceplane.errors import InputError
+from spaceplane.flow.equilibrium import speed_of_sound
 from spaceplane.flow.solution import FlowConditions, Solution
 from spaceplane.mesh.elements import Elements
 from spaceplane.mesh.mesh import Mesh
@@ -62,7 +63,7 @@ def write_vtu(
         grid = pyvista.UnstructuredGrid(kinds, elements.points)
     for i, label in enumerate(labels or condition_labels(conditions)):
         density, velocity, pressure = solution.state[:, 0, i], solution.state[:, 1:4, i], solution.state[:, 4, i]
-        sound = np.sqrt(conditions.gamma * pressure / density)
+        sound = speed_of_sound(conditions, i, density, pressure)
         grid.cell_data[f"Mach_{label}"] = (np.linalg.norm(velocity, axis=1) / sound).astype(np.float32)
         cp = (pressure - 1.0 / conditions.gamma) / (0.5 * conditions.mach[i] ** 2)
         grid.cell_data[f"Cp_{label}"] = cp.astype(np.float32)

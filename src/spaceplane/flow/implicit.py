@@ -13,15 +13,17 @@ from numba import prange
 
 from spaceplane.flow.bounds import at_bound, bounded
 from spaceplane.flow.compiled import LANES, PRS, RHO, ROW, VX, VY, VZ, distinct, inlined, kernel
+from spaceplane.flow.gas import OUTSIDE, heat_of, ratio_between
 from spaceplane.flow.jacobian import dissipation_increment, face_average, flux_increment, wave_dissipation
 
 
 @inlined
-def add_dissipation(block, n, scale, r, u, v, w, a, d0, dp, dm, nx, ny, nz, gamma):
+def add_dissipation(block, n, scale, r, u, v, w, a, d0, dp, dm, nx, ny, nz, heat):
     """Add scale * Q (see `jacobian.dissipation_increment`) to `block` [25 x lane], row-major 5 row + column."""
     real = type(r)
     one = real(1)
     half = real(0.5)
+    gamma, stiff, _, slope = heat
     kinetic = half * (u * u + v * v + w * w)
     enthalpy = a * a / (gamma - one) + kinetic
     d0 = d0 * scale
@@ -32,7 +34,7 @@ def add_dissipation(block, n, scale, r, u, v, w, a, d0, dp, dm, nx, ny, nz, gamm
     block[5 * LANES + n] += d0 * u
     block[10 * LANES + n] += d0 * v
     block[15 * LANES + n] += d0 * w
-    block[20 * LANES + n] += d0 * kinetic
+    block[20 * LANES + n] += d0 * (kinetic + slope)
     # Column of p.
     inverse = one / (a * a)
     s = (mean - d0) * inverse
@@ -41,7 +43,7 @@ def add_dissipation(block, n, scale, r, u, v, w, a, d0, dp, dm, nx, ny, nz, gamm
     block[9 * LANES + n] += u * s + nx * t
     block[14 * LANES + n] += v * s + ny * t
     block[19 * LANES + n] += w * s + nz * t
-    block[24 * LANES + n] += enthalpy * s + d0 * gamma / (gamma - one)
+    block[24 * LANES + n] += enthalpy * s + d0 * stiff
     # Columns of velocity: sound waves along n, shear across it.
     s = skew * r / a
     t = mean * r
@@ -69,26 +71,26 @@ def add_dissipation(block, n, scale, r, u, v, w, a, d0, dp, dm, nx, ny, nz, gamm
 
 
 @inlined
-def add_flux(block, n, scale, r, u, v, w, p, nx, ny, nz, gamma):
+def add_flux(block, n, scale, r, u, v, w, p, nx, ny, nz, heat):
     """Add scale * A_n (see `jacobian.flux_increment`) to `block`."""
     real = type(r)
-    one = real(1)
+    gamma, stiff, _, slope = heat
     un = u * nx + v * ny + w * nz
     kinetic = real(0.5) * (u * u + v * v + w * w)
-    stiff = gamma / (gamma - one)
+    factor = gamma / (gamma - real(1))
     m = scale * r * un
     c = scale * un
     block[0 * LANES + n] += c
     block[5 * LANES + n] += c * u
     block[10 * LANES + n] += c * v
     block[15 * LANES + n] += c * w
-    block[20 * LANES + n] += c * kinetic
+    block[20 * LANES + n] += c * (kinetic + slope)
     block[9 * LANES + n] += scale * nx
     block[14 * LANES + n] += scale * ny
     block[19 * LANES + n] += scale * nz
     block[24 * LANES + n] += c * stiff
     s = scale * r
-    e = scale * (stiff * p + r * kinetic)
+    e = scale * (factor * p + r * kinetic)
     block[1 * LANES + n] += s * nx
     block[2 * LANES + n] += s * ny
     block[3 * LANES + n] += s * nz
@@ -107,14 +109,15 @@ def add_flux(block, n, scale, r, u, v, w, p, nx, ny, nz, gamma):
 
 
 @inlined
-def add_mass(block, n, scale, r, u, v, w, gamma):
+def add_mass(block, n, scale, r, u, v, w, heat):
     """Add scale * dq/d(primitive) to `block`."""
     real = type(r)
+    _, _, soft, slope = heat
     block[0 * LANES + n] += scale
     block[5 * LANES + n] += scale * u
     block[10 * LANES + n] += scale * v
     block[15 * LANES + n] += scale * w
-    block[20 * LANES + n] += scale * real(0.5) * (u * u + v * v + w * w)
+    block[20 * LANES + n] += scale * (real(0.5) * (u * u + v * v + w * w) + slope)
     s = scale * r
     block[6 * LANES + n] += s
     block[12 * LANES + n] += s
@@ -122,7 +125,7 @@ def add_mass(block, n, scale, r, u, v, w, gamma):
     block[21 * LANES + n] += s * u
     block[22 * LANES + n] += s * v
     block[23 * LANES + n] += s * w
-    block[24 * LANES + n] += scale / (gamma - real(1))
+    block[24 * LANES + n] += scale / soft
 
 
 @distinct
@@ -153,9 +156,10 @@ def invert(block):
 
 
 @inlined
-def between(rows, i, there, j, n, nx, ny, nz, gamma):
-    """`face_average` of cell i of `rows` and row j of `there`, in lane n."""
-    return face_average(
+def between(rows, i, there, j, k, n, nx, ny, nz, gas):
+    """`face_average` and gamma~ of cell i of `rows` and row j of `there`, in lane n; the gas knows the latter as k."""
+    ratio = ratio_between(gas, i, k, n)
+    mean = face_average(
         rows[i, RHO + n],
         rows[i, VX + n],
         rows[i, VY + n],
@@ -169,33 +173,37 @@ def between(rows, i, there, j, n, nx, ny, nz, gamma):
         nx,
         ny,
         nz,
-        gamma,
+        ratio,
     )
+    return mean, ratio
 
 
 @distinct
-def add_face(block, radius, rows, i, there, j, theta, scale, nx, ny, nz, gamma):
-    """Add scale * Q of the face between cell i of `rows` and row j of `there` to `block`, its spectral radius to
-    `radius`; `theta` [lane] weight of HLLE."""
+def add_face(block, radius, rows, i, there, j, k, theta, scale, nx, ny, nz, gas):
+    """Add scale * Q of the face between cell i of `rows` and row j of `there` (see `between`) to `block`, its spectral
+    radius to `radius`; `theta` [lane] weight of HLLE."""
     for n in range(LANES):
-        r, u, v, w, a, un = between(rows, i, there, j, n, nx, ny, nz, gamma)
+        (r, u, v, w, a, un), ratio = between(rows, i, there, j, k, n, nx, ny, nz, gas)
+        # A face dissipates the jump of each side's own enthalpy: averages of its slopes across a shock are neither's.
+        _, stiff, soft, slope = heat_of(gas, i, n, rows[i, RHO + n], rows[i, PRS + n])
         d0, dp, dm = wave_dissipation(un, a, theta[n])
         radius[n] += scale * (abs(un) + a)
-        add_dissipation(block, n, scale, r, u, v, w, a, d0, dp, dm, nx, ny, nz, gamma)
+        add_dissipation(block, n, scale, r, u, v, w, a, d0, dp, dm, nx, ny, nz, (ratio, stiff, soft, slope))
 
 
 @distinct
-def add_wall(block, radius, rows, i, area, nx, ny, nz, gamma, stiffness):
+def add_wall(block, radius, rows, i, area, nx, ny, nz, gas, stiffness):
     """Add a wall face of cell i to `block` and `radius`."""
-    half = type(gamma)(0.5)
+    half = type(gas.gamma)(0.5)
     scale = half * area
     for n in range(LANES):
         r = rows[i, RHO + n]
         p = rows[i, PRS + n]
-        a = math.sqrt(gamma * p / r)
+        heat = heat_of(gas, i, n, r, p)
+        a = math.sqrt(heat[0] * p / r)
         radius[n] += scale * a
         # Half of A_n is what the closed sum over faces leaves out; the wall's own flux is pressure.
-        add_flux(block, n, -scale, r, rows[i, VX + n], rows[i, VY + n], rows[i, VZ + n], p, nx, ny, nz, gamma)
+        add_flux(block, n, -scale, r, rows[i, VX + n], rows[i, VY + n], rows[i, VZ + n], p, nx, ny, nz, heat)
         push = area * max(stiffness, half) * r * a
         block[9 * LANES + n] += area * nx
         block[14 * LANES + n] += area * ny
@@ -213,7 +221,7 @@ def add_wall(block, radius, rows, i, area, nx, ny, nz, gamma, stiffness):
 
 @distinct
 def diagonal_chunk(
-    topology, first, last, rows, sensor, free, cfl, pace, again, gamma, stiffness, out, block, radius, theta
+    topology, first, last, rows, sensor, free, cfl, pace, again, gas, stiffness, out, block, radius, theta
 ):
     """The part of `diagonals` for cells `first` to `last`; scratch rows from `block` on."""
     start = topology.start
@@ -225,8 +233,8 @@ def diagonal_chunk(
     edge_normal = topology.boundary_normal
     edge_area = topology.boundary_area
     walls = topology.walls
-    half = type(gamma)(0.5)
-    zero = type(gamma)(0)
+    half = type(gas.gamma)(0.5)
+    zero = type(gas.gamma)(0)
     for i in range(first, last):
         block[:] = zero
         radius[:] = zero
@@ -237,7 +245,7 @@ def diagonal_chunk(
             nx = normal[e, 0]
             ny = normal[e, 1]
             nz = normal[e, 2]
-            add_face(block, radius, rows, i, rows, j, theta, half * areas[e], nx, ny, nz, gamma)
+            add_face(block, radius, rows, i, rows, j, j, theta, half * areas[e], nx, ny, nz, gas)
         for m in range(edge_start[i], edge_start[i + 1]):
             row = edge_row[m]
             nx = edge_normal[row, 0]
@@ -245,15 +253,17 @@ def diagonal_chunk(
             nz = edge_normal[row, 2]
             area = edge_area[row]
             if row < walls:
-                add_wall(block, radius, rows, i, area, nx, ny, nz, gamma, stiffness)
+                add_wall(block, radius, rows, i, area, nx, ny, nz, gas, stiffness)
             else:
                 theta[:] = zero
-                add_face(block, radius, rows, i, free, row - walls, theta, half * area, nx, ny, nz, gamma)
+                add_face(block, radius, rows, i, free, row - walls, OUTSIDE, theta, half * area, nx, ny, nz, gas)
         for n in range(LANES):
             u = rows[i, VX + n]
             v = rows[i, VY + n]
             w = rows[i, VZ + n]
-            add_mass(block, n, radius[n] / (cfl[n] * pace[i, n]), rows[i, RHO + n], u, v, w, gamma)
+            r = rows[i, RHO + n]
+            heat = heat_of(gas, i, n, r, rows[i, PRS + n])
+            add_mass(block, n, radius[n] / (cfl[n] * pace[i, n]), r, u, v, w, heat)
         invert(block)
         for k in range(0, 25 * LANES, LANES):
             for n in range(LANES):
@@ -261,13 +271,14 @@ def diagonal_chunk(
 
 
 @kernel
-def diagonals(topology, state, sensor, free, cfl, pace, again, gamma, stiffness, out):
+def diagonals(topology, state, sensor, free, cfl, pace, again, gas, stiffness, out):
     """Fill `out` [cell, 25 x lane] with the inverse diagonal blocks, pseudo-time term included.
 
     Args:
         free: [far face, 5, lane] state outside the far field.
         cfl: [lane] CFL number on the sum of spectral radii over the faces; `pace` [cell, lane] factor on it.
         again: [lane] 0 where the blocks stay as they are.
+        gas: see `gas`; its heats are those of `state`.
     """
     rows = state.reshape(state.shape[0], ROW)
     outside = free.reshape(free.shape[0], ROW)
@@ -279,12 +290,12 @@ def diagonals(topology, state, sensor, free, cfl, pace, again, gamma, stiffness,
         radius = np.empty(LANES, state.dtype)
         theta = np.empty(LANES, state.dtype)
         diagonal_chunk(
-            topology, first, last, rows, sensor, outside, cfl, pace, again, gamma, stiffness, out, block, radius, theta
+            topology, first, last, rows, sensor, outside, cfl, pace, again, gas, stiffness, out, block, radius, theta
         )
 
 
 @distinct
-def add_products(sums, rows, sensor, change, i, j, scale, nx, ny, nz, gamma):
+def add_products(sums, rows, sensor, change, i, j, scale, nx, ny, nz, gas):
     """Add to `sums` the off-diagonal block of cell i for its neighbour j times the neighbour's change."""
     for n in range(LANES):
         rj = rows[j, RHO + n]
@@ -297,12 +308,13 @@ def add_products(sums, rows, sensor, change, i, j, scale, nx, ny, nz, gamma):
         d_v = change[j, VY + n]
         d_w = change[j, VZ + n]
         d_p = change[j, PRS + n]
-        r, u, v, w, a, un = between(rows, i, rows, j, n, nx, ny, nz, gamma)
+        (r, u, v, w, a, un), ratio = between(rows, i, rows, j, j, n, nx, ny, nz, gas)
         d0, dp, dm = wave_dissipation(un, a, max(sensor[i, n], sensor[j, n]))
-        f0, f1, f2, f3, f4 = flux_increment(rj, uj, vj, wj, pj, d_r, d_u, d_v, d_w, d_p, nx, ny, nz, gamma)
-        g0, g1, g2, g3, g4 = dissipation_increment(
-            r, u, v, w, a, d0, dp, dm, d_r, d_u, d_v, d_w, d_p, nx, ny, nz, gamma
-        )
+        heat = heat_of(gas, j, n, rj, pj)
+        f0, f1, f2, f3, f4 = flux_increment(rj, uj, vj, wj, pj, d_r, d_u, d_v, d_w, d_p, nx, ny, nz, heat)
+        _, stiff, soft, slope = heat
+        own = ratio, stiff, soft, slope
+        g0, g1, g2, g3, g4 = dissipation_increment(r, u, v, w, a, d0, dp, dm, d_r, d_u, d_v, d_w, d_p, nx, ny, nz, own)
         sums[RHO + n] += scale * (f0 - g0)
         sums[VX + n] += scale * (f1 - g1)
         sums[VY + n] += scale * (f2 - g2)
@@ -311,18 +323,18 @@ def add_products(sums, rows, sensor, change, i, j, scale, nx, ny, nz, gamma):
 
 
 @distinct
-def sweep_block(topology, first, count, rows, sensor, residual, inverse, change, passed, gamma, forward, sums, rhs):
+def sweep_block(topology, first, count, rows, sensor, residual, inverse, change, passed, gas, forward, sums, rhs):
     """The part of `sweep` for `count` cells from `first` on, upwards or downwards; `sums`, `rhs` scratch rows."""
     start = topology.start
     split = topology.split
     other = topology.other
     normal = topology.normal
     areas = topology.area
-    half = type(gamma)(0.5)
+    half = type(gas.gamma)(0.5)
     for m in range(count):
         i = first + m if forward else first + count - 1 - m
         for k in range(ROW):
-            sums[k] = type(gamma)(0)
+            sums[k] = type(gas.gamma)(0)
         low = start[i] if forward else split[i]
         high = split[i] if forward else start[i + 1]
         for e in range(low, high):
@@ -330,7 +342,7 @@ def sweep_block(topology, first, count, rows, sensor, residual, inverse, change,
             nx = normal[e, 0]
             ny = normal[e, 1]
             nz = normal[e, 2]
-            add_products(sums, rows, sensor, change, i, j, half * areas[e], nx, ny, nz, gamma)
+            add_products(sums, rows, sensor, change, i, j, half * areas[e], nx, ny, nz, gas)
         for k in range(ROW):
             rhs[k] = -residual[i, k] - passed[i, k] - sums[k]
             passed[i, k] = sums[k]
@@ -344,13 +356,13 @@ def sweep_block(topology, first, count, rows, sensor, residual, inverse, change,
                     + inverse[i, (5 * k + 4) * LANES + n] * rhs[PRS + n]
                 )
         for n in range(LANES):
-            dr, dp = bounded(rows[i, RHO + n], rows[i, PRS + n], change[i, RHO + n], change[i, PRS + n], gamma)
+            dr, dp = bounded(rows[i, RHO + n], rows[i, PRS + n], change[i, RHO + n], change[i, PRS + n], gas.gamma)
             change[i, RHO + n] = dr
             change[i, PRS + n] = dp
 
 
 @kernel
-def sweep(topology, state, sensor, residual, inverse, change, passed, gamma, forward):
+def sweep(topology, state, sensor, residual, inverse, change, passed, gas, forward):
     """One Gauss-Seidel pass over all cells, colour by colour: change_i = D^-1 (-residual_i - sum of off-diagonal
     products).
 
@@ -383,7 +395,7 @@ def sweep(topology, state, sensor, residual, inverse, change, passed, gamma, for
             sums = np.empty(ROW, state.dtype)
             rhs = np.empty(ROW, state.dtype)
             sweep_block(
-                topology, first, count, rows, sensor, outflow, inverse, changes, others, gamma, forward, sums, rhs
+                topology, first, count, rows, sensor, outflow, inverse, changes, others, gas, forward, sums, rhs
             )
 
 

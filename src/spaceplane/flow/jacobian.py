@@ -30,26 +30,35 @@ def wave_dissipation(un, a, theta):
 
 
 @inlined
-def flux_increment(r, u, v, w, p, dr, du, dv, dw, dp, nx, ny, nz, gamma):
-    """A_n dq: increment of the physical flux through a unit area, conservative, from primitive increments."""
+def flux_increment(r, u, v, w, p, dr, du, dv, dw, dp, nx, ny, nz, heat):
+    """A_n dq: increment of the physical flux through a unit area, conservative, from primitive increments.
+
+    `heat` holds the gas's derivatives at the state, see `gas.heat_of`.
+    """
     real = type(r)
-    one = real(1)
     half = real(0.5)
+    gamma, stiff, _, slope = heat
     un = u * nx + v * ny + w * nz
     dun = du * nx + dv * ny + dw * nz
     dm = r * dun + un * dr
     m = r * un
     kinetic = half * (u * u + v * v + w * w)
-    stiff = gamma / (gamma - one)
-    energy = (stiff * p + r * kinetic) * dun + un * (stiff * dp + kinetic * dr + r * (u * du + v * dv + w * dw))
+    factor = gamma / (gamma - real(1))
+    energy = (factor * p + r * kinetic) * dun + un * (
+        stiff * dp + (kinetic + slope) * dr + r * (u * du + v * dv + w * dw)
+    )
     return dm, dm * u + m * du + dp * nx, dm * v + m * dv + dp * ny, dm * w + m * dw + dp * nz, energy
 
 
 @inlined
-def dissipation_increment(r, u, v, w, a, d0, dp_, dm_, dr, du, dv, dw, dp, nx, ny, nz, gamma):
-    """Q dq at a face with density r, velocity (u, v, w), sound speed a and wave dissipations d0, dp_, dm_."""
+def dissipation_increment(r, u, v, w, a, d0, dp_, dm_, dr, du, dv, dw, dp, nx, ny, nz, heat):
+    """Q dq at a face with density r, velocity (u, v, w), sound speed a and wave dissipations d0, dp_, dm_.
+
+    `heat` holds gamma~ at the face and the gas's derivatives at the side that dq belongs to, see `gas.heat_of`.
+    """
     real = type(r)
     one = real(1)
+    gamma, stiff, _, slope = heat
     half = real(0.5)
     dun = du * nx + dv * ny + dw * nz
     inverse = one / (a * a)
@@ -59,14 +68,14 @@ def dissipation_increment(r, u, v, w, a, d0, dp_, dm_, dr, du, dv, dw, dp, nx, n
     t = (up - down) * a
     z = d0 * (dr - dp * inverse)
     shear = d0 * r
-    heat = a * a / (gamma - one)
-    enthalpy = heat + half * (u * u + v * v + w * w)
+    static = a * a / (gamma - one)
+    enthalpy = static + half * (u * u + v * v + w * w)
     return (
         s + z,
         u * (s + z) + nx * t + shear * (du - nx * dun),
         v * (s + z) + ny * t + shear * (dv - ny * dun),
         w * (s + z) + nz * t + shear * (dw - nz * dun),
-        enthalpy * (s + z) + d0 * (gamma / (gamma - one) * dp - heat * dr) + shear * (u * du + v * dv + w * dw),
+        enthalpy * (s + z) + d0 * (stiff * dp - (static - slope) * dr) + shear * (u * du + v * dv + w * dw),
     )
 
 

@@ -9,6 +9,7 @@ from numba import prange
 
 from spaceplane.flow.compiled import LANES, PRS, RHO, ROW, VX, VY, VZ, distinct, inlined, kernel
 from spaceplane.flow.fluxes import blend, hllc, shrink_normal_jump
+from spaceplane.flow.gas import fill_outside_ratios, fill_ratios, heat_of, ratio_in
 from spaceplane.flow.rotation import add_turning, carry_back, face_speed, follow
 
 
@@ -40,9 +41,11 @@ def reconstruct(rows, gradient, i, dx, dy, dz, side):
 
 
 @inlined
-def with_flux(flux, left, right, theta, nx, ny, nz, area, gamma, p0, low_mach, f):
-    """Fill `f` with area * flux between the states `left` and `right`, their normal jump scaled at low Mach
-    numbers."""
+def with_flux(flux, left, right, ratio_l, ratio_r, theta, nx, ny, nz, area, gas, p0, low_mach, f):
+    """Fill `f` with area * flux between the states `left` and `right`, their normal jump scaled at low Mach numbers.
+
+    `ratio_l` and `ratio_r` hold the states' ratios of specific heats, see `gas.fill_ratios`.
+    """
     for n in range(LANES):
         rl = left[RHO + n]
         ul = left[VX + n]
@@ -54,11 +57,13 @@ def with_flux(flux, left, right, theta, nx, ny, nz, area, gamma, p0, low_mach, f
         vr = right[VY + n]
         wr = right[VZ + n]
         pr = right[PRS + n]
-        m2l = (ul * ul + vl * vl + wl * wl) * rl / (gamma * pl)
-        m2r = (ur * ur + vr * vr + wr * wr) * rr / (gamma * pr)
+        gl = ratio_in(gas, ratio_l, n)
+        gr = ratio_in(gas, ratio_r, n)
+        m2l = (ul * ul + vl * vl + wl * wl) * rl / (gl * pl)
+        m2r = (ur * ur + vr * vr + wr * wr) * rr / (gr * pr)
         mach = max(math.sqrt(max(m2l, m2r)), low_mach)
         ul, vl, wl, ur, vr, wr = shrink_normal_jump(ul, vl, wl, ur, vr, wr, nx, ny, nz, mach)
-        f0, f1, f2, f3, f4 = flux(rl, ul, vl, wl, pl, rr, ur, vr, wr, pr, nx, ny, nz, gamma, p0, theta[n])
+        f0, f1, f2, f3, f4 = flux(rl, ul, vl, wl, pl, rr, ur, vr, wr, pr, nx, ny, nz, gl, gr, p0, theta[n])
         f[RHO + n] = area * f0
         f[VX + n] = area * f1
         f[VY + n] = area * f2
@@ -67,21 +72,21 @@ def with_flux(flux, left, right, theta, nx, ny, nz, area, gamma, p0, low_mach, f
 
 
 @inlined
-def plain(rl, ul, vl, wl, pl, rr, ur, vr, wr, pr, nx, ny, nz, gamma, p0, theta):
+def plain(rl, ul, vl, wl, pl, rr, ur, vr, wr, pr, nx, ny, nz, gl, gr, p0, theta):
     """HLLC, called like `blend`."""
-    return hllc(rl, ul, vl, wl, pl, rr, ur, vr, wr, pr, nx, ny, nz, gamma, p0)
+    return hllc(rl, ul, vl, wl, pl, rr, ur, vr, wr, pr, nx, ny, nz, gl, gr, p0)
 
 
 @distinct
-def hllc_face(left, right, theta, nx, ny, nz, area, gamma, p0, low_mach, f):
+def hllc_face(left, right, ratio_l, ratio_r, theta, nx, ny, nz, area, gas, p0, low_mach, f):
     """`with_flux` without HLLE: where no lane has a shock, which is nearly everywhere."""
-    with_flux(plain, left, right, theta, nx, ny, nz, area, gamma, p0, low_mach, f)
+    with_flux(plain, left, right, ratio_l, ratio_r, theta, nx, ny, nz, area, gas, p0, low_mach, f)
 
 
 @distinct
-def blend_face(left, right, theta, nx, ny, nz, area, gamma, p0, low_mach, f):
+def blend_face(left, right, ratio_l, ratio_r, theta, nx, ny, nz, area, gas, p0, low_mach, f):
     """`with_flux` with both."""
-    with_flux(blend, left, right, theta, nx, ny, nz, area, gamma, p0, low_mach, f)
+    with_flux(blend, left, right, ratio_l, ratio_r, theta, nx, ny, nz, area, gas, p0, low_mach, f)
 
 
 @distinct
@@ -94,12 +99,14 @@ def flux_chunk(
     free,
     frame,
     residual,
-    gamma,
+    gas,
     low_mach,
     stiffness,
     order,
     left,
     right,
+    ratio_l,
+    ratio_r,
     theta,
     speed,
     f,
@@ -118,9 +125,9 @@ def flux_chunk(
     edge_start = topology.edge_start
     edge_row = topology.edge_row
     walls = topology.walls
-    real = type(gamma)
+    real = type(gas.gamma)
     zero = real(0)
-    p0 = real(1) / gamma
+    p0 = real(1) / gas.gamma
     residual[first:last] = zero
     for entry in range(topology.chunk_start[chunk], topology.chunk_start[chunk + 1]):
         face = chunk_faces[entry]
@@ -137,6 +144,8 @@ def flux_chunk(
         else:
             reconstruct(rows, gradient, i, reach[face, 0], reach[face, 1], reach[face, 2], left)
             reconstruct(rows, gradient, j, reach[face, 3], reach[face, 4], reach[face, 5], right)
+        fill_ratios(gas, rows, i, left, ratio_l)
+        fill_ratios(gas, rows, j, right, ratio_r)
         if turns:
             face_speed(frame, swirl[face, 0], swirl[face, 1], swirl[face, 2], nx, ny, nz, speed)
             follow(left, speed, nx, ny, nz)
@@ -146,9 +155,9 @@ def flux_chunk(
             theta[n] = max(sensor[i, n], sensor[j, n])
             highest = max(highest, theta[n])
         if highest > zero:
-            blend_face(left, right, theta, nx, ny, nz, area, gamma, p0, low_mach, f)
+            blend_face(left, right, ratio_l, ratio_r, theta, nx, ny, nz, area, gas, p0, low_mach, f)
         else:
-            hllc_face(left, right, theta, nx, ny, nz, area, gamma, p0, low_mach, f)
+            hllc_face(left, right, ratio_l, ratio_r, theta, nx, ny, nz, area, gas, p0, low_mach, f)
         if turns:
             carry_back(f, speed, nx, ny, nz)
         if i >= first and i < last:
@@ -168,7 +177,7 @@ def flux_chunk(
             if turns:
                 face_speed(frame, edge_swirl[row, 0], edge_swirl[row, 1], edge_swirl[row, 2], nx, ny, nz, speed)
             if row < walls:
-                push_wall(topology, rows, gradient, i, row, gamma, stiffness, order, f)
+                push_wall(topology, rows, gradient, i, row, gas, stiffness, order, f)
                 for n in range(LANES):
                     q = area * (f[n] - p0)
                     residual[i, VX + n] += q * nx
@@ -184,7 +193,9 @@ def flux_chunk(
                 if turns:
                     follow(left, speed, nx, ny, nz)
                     follow(right, speed, nx, ny, nz)
-                hllc_face(left, right, theta, nx, ny, nz, area, gamma, p0, real(1), f)
+                fill_ratios(gas, rows, i, left, ratio_l)
+                fill_outside_ratios(gas, ratio_r)
+                hllc_face(left, right, ratio_l, ratio_r, theta, nx, ny, nz, area, gas, p0, real(1), f)
                 if turns:
                     carry_back(f, speed, nx, ny, nz)
                 for k in range(ROW):
@@ -194,9 +205,10 @@ def flux_chunk(
 
 
 @distinct
-def push_wall(topology, rows, gradient, i, row, gamma, stiffness, order, out):
+def push_wall(topology, rows, gradient, i, row, gas, stiffness, order, out):
     """Fill `out` [lane] with the pressure on wall face `row` of cell i."""
-    reach = type(gamma)(0) if order == 1 else type(gamma)(1)
+    real = type(gas.gamma)
+    reach = real(0) if order == 1 else real(1)
     dx = topology.boundary_reach[row, 0] * reach
     dy = topology.boundary_reach[row, 1] * reach
     dz = topology.boundary_reach[row, 2] * reach
@@ -211,17 +223,19 @@ def push_wall(topology, rows, gradient, i, row, gamma, stiffness, order, out):
         u = rows[i, VX + n]
         v = rows[i, VY + n]
         w = rows[i, VZ + n]
-        out[n] = wall_pressure(r, u, v, w, p, p_wall, nx, ny, nz, gamma, stiffness)
+        heat = heat_of(gas, i, n, r, p)
+        out[n] = wall_pressure(r, u, v, w, p, p_wall, nx, ny, nz, heat[0], stiffness)
 
 
 @kernel
-def fluxes(topology, state, gradient, sensor, free, frame, residual, gamma, low_mach, stiffness, order):
+def fluxes(topology, state, gradient, sensor, free, frame, residual, gas, low_mach, stiffness, order):
     """Fill `residual` [cell, 5, lane] with the net outflow of mass, momentum and energy.
 
     Args:
         state: [cell, 5, lane]; gradient: [cell, axis, 5 x lane] limited; sensor: [cell, lane] weight of HLLE.
         free: [far face, 5, lane] state outside the far field.
         frame: how the lanes turn, see `rotation.Frame`.
+        gas: see `gas`; its heats are those of `state`.
         low_mach: smallest local Mach number to which the normal jump is scaled down; 1 switches the correction off.
         stiffness: see `wall_pressure`.
         order: 1 ignores the gradients.
@@ -232,6 +246,8 @@ def fluxes(topology, state, gradient, sensor, free, frame, residual, gamma, low_
     for chunk in prange(topology.chunk_cells.shape[0] - 1):
         left = np.empty(ROW, state.dtype)
         right = np.empty(ROW, state.dtype)
+        ratio_l = np.empty(LANES, state.dtype)
+        ratio_r = np.empty(LANES, state.dtype)
         theta = np.empty(LANES, state.dtype)
         speed = np.empty(LANES, state.dtype)
         f = np.empty(ROW, state.dtype)
@@ -244,12 +260,14 @@ def fluxes(topology, state, gradient, sensor, free, frame, residual, gamma, low_
             outside,
             frame,
             outflow,
-            gamma,
+            gas,
             low_mach,
             stiffness,
             order,
             left,
             right,
+            ratio_l,
+            ratio_r,
             theta,
             speed,
             f,
@@ -257,8 +275,8 @@ def fluxes(topology, state, gradient, sensor, free, frame, residual, gamma, low_
 
 
 @kernel
-def pressures_on_wall(topology, state, gradient, gamma, stiffness, order, out):
+def pressures_on_wall(topology, state, gradient, gas, stiffness, order, out):
     """Fill `out` [wall, lane] with the pressure that `fluxes` puts on each wall face."""
     rows = state.reshape(state.shape[0], ROW)
     for row in prange(topology.walls):
-        push_wall(topology, rows, gradient, topology.boundary_cell[row], row, gamma, stiffness, order, out[row])
+        push_wall(topology, rows, gradient, topology.boundary_cell[row], row, gas, stiffness, order, out[row])

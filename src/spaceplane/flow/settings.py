@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Container
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from spaceplane.errors import InputError, unknown_name
+from spaceplane.flow.equilibrium import check_air
 from spaceplane.flow.fluxes import FLUXES
 from spaceplane.flow.limiters import LIMITERS
-from spaceplane.flow.solution import FlowConditions
+from spaceplane.flow.solution import EQUILIBRIUM, GASES, FlowConditions
 
 PRECISIONS = {"single": np.float32, "double": np.float64}
 
@@ -99,7 +101,7 @@ class FlowSettings:
         return PRECISIONS[self.precision]
 
 
-def choose(field: str, name: str, registry: dict) -> None:
+def choose(field: str, name: str, registry: Container[str]) -> None:
     """Refuse a `name` that the registry does not have."""
     if name not in registry:
         raise InputError(unknown_name(field, name, registry))
@@ -129,7 +131,13 @@ def check(conditions: FlowConditions) -> FlowConditions:
     if not (np.isfinite(conditions.gamma) and 1.0 < conditions.gamma <= 3.0):
         raise InputError(f"gamma: {conditions.gamma} is not allowed; greater than 1, at most 3")
     rates, center = _check_rotation(conditions, values["mach"])
-    return FlowConditions(values["mach"], values["alpha"], values["beta"], float(conditions.gamma), rates, center)
+    streams = FlowConditions(values["mach"], values["alpha"], values["beta"], float(conditions.gamma), rates, center)
+    choose("gas", conditions.gas, GASES)
+    if conditions.gas != EQUILIBRIUM:
+        return streams
+    heated = replace(streams, gas=EQUILIBRIUM, density=conditions.density, pressure=conditions.pressure)
+    check_air(heated)
+    return heated
 
 
 def _check_rotation(conditions: FlowConditions, mach: np.ndarray) -> tuple[np.ndarray | None, tuple]:

@@ -8,6 +8,9 @@ import numpy as np
 
 from spaceplane.mesh.mesh import Mesh
 
+PERFECT, EQUILIBRIUM = GASES = ("perfect", "equilibrium")
+"""Constant specific heats, or air in chemical equilibrium."""
+
 
 @dataclass(frozen=True)
 class FlowConditions:
@@ -21,6 +24,8 @@ class FlowConditions:
         rates: [condition, (p, q, r)] steady roll, pitch and yaw rate of the body about `center` on the free-stream
             speed of sound, 1/m; None for no rotation.
         center: (x, y, z) point of the body that moves with the free stream's speed, m, geometry axes.
+        gas: name in `GASES`.
+        density, pressure: [condition] of the free stream, kg/m3 and Pa; the perfect gas needs none.
     """
 
     mach: np.ndarray
@@ -29,14 +34,18 @@ class FlowConditions:
     gamma: float = 1.4
     rates: np.ndarray | None = None
     center: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    gas: str = PERFECT
+    density: np.ndarray | None = None
+    pressure: np.ndarray | None = None
 
     def __len__(self) -> int:
         return len(self.mach)
 
     def take(self, which: np.ndarray) -> FlowConditions:
         """The conditions of these indices."""
-        rates = None if self.rates is None else self.rates[which]
-        return replace(self, mach=self.mach[which], alpha=self.alpha[which], beta=self.beta[which], rates=rates)
+        names = ("mach", "alpha", "beta", "rates", "density", "pressure")
+        values = {name: getattr(self, name) for name in names}
+        return replace(self, **{name: value if value is None else value[which] for name, value in values.items()})
 
     def angular_velocity(self) -> np.ndarray:
         """[condition, xyz] angular velocity of the body in geometry axes, 1/m (x and z of body axes are reversed)."""
@@ -85,7 +94,7 @@ class Solution:
     """Steady flow of every condition on one mesh.
 
     Scaled units: density on the free stream's, velocity on the free-stream speed of sound, pressure on
-    rho_inf a_inf^2 (so p_inf = 1/gamma and q_inf = Mach^2/2).
+    rho_inf a_inf^2 (so p_inf = 1/gamma and q_inf = Mach^2/2); a_inf is that of cold air in equilibrium air too.
 
     Attributes:
         state: [cell, (rho, u, v, w, p), condition].

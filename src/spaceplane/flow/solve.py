@@ -51,7 +51,8 @@ def solve(
     fine = levels.meshes[0]
     if not fine.cells:
         raise InputError("mesh: 0 cells; at least one is needed")
-    cold = not CACHE.is_complete(settings.precision)
+    kernels = f"{settings.precision}-{conditions.gas}"
+    cold = not CACHE.is_complete(kernels)
     if cold:
         say("compile", 0, 1, "compiling kernels (once, ~30 s)")
     topologies = [prepare(level, settings.dtype) for level in levels.meshes]
@@ -69,7 +70,7 @@ def solve(
         for which in batches(retry):
             job.run(which, Caution(min(5.0, settings.cfl_start), min(25.0, settings.cfl_max), 1.2, 0.25), seconds)
     if cold:
-        CACHE.mark_complete(settings.precision)
+        CACHE.mark_complete(kernels)
     records = tuple(judge(job.histories[c], settings) for c in range(len(conditions)))
     seconds["total"] = time.perf_counter() - began
     warnings = [f"condition {c}: {r.verdict}: {r.reason}" for c, r in enumerate(records) if not r.good]

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from spaceplane.environment.atmosphere import Ambient
 from spaceplane.errors import InputError
+from spaceplane.flow.solution import PERFECT
 
 FRICTION = ("off", "laminar", "turbulent")
 BASE = ("inviscid", "correlation")
@@ -62,6 +63,16 @@ class IncrementSettings:
 
 VISCOUS = IncrementSettings(friction="turbulent", base="correlation")
 """What agrees best with the published drag of HORUS-2B, HB-2 and the sphere (docs, method)."""
+
+
+def require_no_friction(gas: str, increments: IncrementSettings | None) -> None:
+    """Refuse skin friction in a gas that is not perfect: its boundary layers are those of a perfect gas.
+
+    Raises:
+        InputError: friction is on.
+    """
+    if gas != PERFECT and increments is not None and increments.friction != "off":
+        raise InputError(f"friction = {increments.friction!r}: not allowed with gas {gas}; off")
 
 
 @dataclass(frozen=True)

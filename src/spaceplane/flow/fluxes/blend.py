@@ -11,10 +11,10 @@ from spaceplane.flow.fluxes.hlle import hlle
 
 
 @inlined
-def blend(rl, ul, vl, wl, pl, rr, ur, vr, wr, pr, nx, ny, nz, gamma, p0, theta):
+def blend(rl, ul, vl, wl, pl, rr, ur, vr, wr, pr, nx, ny, nz, gl, gr, p0, theta):
     """theta HLLE + (1 - theta) HLLC, per unit area; theta 0 is HLLC, 1 is HLLE."""
-    c0, c1, c2, c3, c4 = hllc(rl, ul, vl, wl, pl, rr, ur, vr, wr, pr, nx, ny, nz, gamma, p0)
-    e0, e1, e2, e3, e4 = hlle(rl, ul, vl, wl, pl, rr, ur, vr, wr, pr, nx, ny, nz, gamma, p0)
+    c0, c1, c2, c3, c4 = hllc(rl, ul, vl, wl, pl, rr, ur, vr, wr, pr, nx, ny, nz, gl, gr, p0)
+    e0, e1, e2, e3, e4 = hlle(rl, ul, vl, wl, pl, rr, ur, vr, wr, pr, nx, ny, nz, gl, gr, p0)
     return (
         c0 + theta * (e0 - c0),
         c1 + theta * (e1 - c1),

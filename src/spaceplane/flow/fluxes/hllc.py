@@ -15,12 +15,12 @@ from spaceplane.flow.fluxes.waves import wave_speeds
 
 
 @inlined
-def hllc(rl, ul, vl, wl, pl, rr, ur, vr, wr, pr, nx, ny, nz, gamma, p0):
+def hllc(rl, ul, vl, wl, pl, rr, ur, vr, wr, pr, nx, ny, nz, gl, gr, p0):
     """Flux of mass, momentum and energy per unit area through a face with unit normal n.
 
-    States are (density, velocity xyz, pressure); `p0` is taken off the pressure in the momentum flux, which changes
-    nothing
-    on closed cells and saves digits.
+    States are (density, velocity xyz, pressure), `gl` and `gr` their ratios of specific heats (equivalent ones, see
+    `flow.gas`); `p0` is taken off
+    the pressure in the momentum flux, which changes nothing on closed cells and saves digits.
     """
     real = type(rl)
     zero = real(0)
@@ -28,9 +28,9 @@ def hllc(rl, ul, vl, wl, pl, rr, ur, vr, wr, pr, nx, ny, nz, gamma, p0):
     half = real(0.5)
     unl = ul * nx + vl * ny + wl * nz
     unr = ur * nx + vr * ny + wr * nz
-    al = math.sqrt(gamma * pl / rl)
-    ar = math.sqrt(gamma * pr / rr)
-    slow, fast = wave_speeds(rl, unl, al, rr, unr, ar, gamma)
+    al = math.sqrt(gl * pl / rl)
+    ar = math.sqrt(gr * pr / rr)
+    slow, fast = wave_speeds(rl, unl, al, rr, unr, ar)
     ml = rl * (slow - unl)
     mr = rr * (fast - unr)
     contact = (pr - pl + ml * unl - mr * unr) / (ml - mr)
@@ -41,6 +41,7 @@ def hllc(rl, ul, vl, wl, pl, rr, ur, vr, wr, pr, nx, ny, nz, gamma, p0):
     w = wl if left else wr
     p = pl if left else pr
     un = unl if left else unr
+    gamma = gl if left else gr
     s = slow if left else fast
     c = min(slow, zero) if left else max(fast, zero)
     energy = p / (gamma - one) + half * r * (u * u + v * v + w * w)

@@ -14,7 +14,7 @@ from spaceplane.flow.fluxes.waves import wave_speeds
 
 
 @inlined
-def hlle(rl, ul, vl, wl, pl, rr, ur, vr, wr, pr, nx, ny, nz, gamma, p0):
+def hlle(rl, ul, vl, wl, pl, rr, ur, vr, wr, pr, nx, ny, nz, gl, gr, p0):
     """Flux of mass, momentum and energy per unit area; arguments as in `hllc`."""
     real = type(rl)
     zero = real(0)
@@ -22,9 +22,9 @@ def hlle(rl, ul, vl, wl, pl, rr, ur, vr, wr, pr, nx, ny, nz, gamma, p0):
     half = real(0.5)
     unl = ul * nx + vl * ny + wl * nz
     unr = ur * nx + vr * ny + wr * nz
-    al = math.sqrt(gamma * pl / rl)
-    ar = math.sqrt(gamma * pr / rr)
-    slow, fast = wave_speeds(rl, unl, al, rr, unr, ar, gamma)
+    al = math.sqrt(gl * pl / rl)
+    ar = math.sqrt(gr * pr / rr)
+    slow, fast = wave_speeds(rl, unl, al, rr, unr, ar)
     slow = min(slow, zero)
     fast = max(fast, zero)
     scale = one / (fast - slow)
@@ -33,9 +33,8 @@ def hlle(rl, ul, vl, wl, pl, rr, ur, vr, wr, pr, nx, ny, nz, gamma, p0):
     d = slow * fast * scale
     ml = rl * (a * unl - d)
     mr = rr * (b * unr + d)
-    stiff = gamma / (gamma - one)
-    hl = stiff * pl / rl + half * (ul * ul + vl * vl + wl * wl)
-    hr = stiff * pr / rr + half * (ur * ur + vr * vr + wr * wr)
+    hl = gl / (gl - one) * pl / rl + half * (ul * ul + vl * vl + wl * wl)
+    hr = gr / (gr - one) * pr / rr + half * (ur * ur + vr * vr + wr * wr)
     q = a * (pl - p0) + b * (pr - p0)
     return (
         ml + mr,

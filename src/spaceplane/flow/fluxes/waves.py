@@ -12,7 +12,7 @@ from spaceplane.flow.compiled import inlined
 
 
 @inlined
-def wave_speeds(rl, unl, al, rr, unr, ar, gamma):
+def wave_speeds(rl, unl, al, rr, unr, ar):
     """Slowest and fastest signal: min(un_L - a_L, u^ - a^), max(un_R + a_R, u^ + a^).
 
     The averaged sound speed uses Einfeldt's eta: a^2 = (sqrt(rl) al^2 + sqrt(rr) ar^2)/(sqrt(rl) + sqrt(rr))
