@@ -69,8 +69,7 @@ def run(fine: bool, progress: Progress) -> list[Record]:
 def mesh_settings(cell: float) -> MeshSettings:
     """Mesh of wall cells of this size, m: a grid plane lies in the base, so that no cell holds cone and base at once.
 
-    A cell that holds the rim has one pressure for both: it takes 1 to 2 % off the normal force of the flare, and the
-    more off the axial force.
+    A cell that holds the rim has one pressure for both, too low for the flare and too high for the base.
     """
     offset = (-LENGTH / cell + 1e-6) % 1.0
     return MeshSettings(wall_cell=cell, wall_layers=6, growth_layers=4, far_field=1.5, offset=(offset, 0.236))
