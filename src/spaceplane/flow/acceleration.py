@@ -20,6 +20,15 @@ SLOWEST = 0.02
 """Least share of the CFL number that a cell marches with."""
 
 
+SHORT_FROM_MACH, SHORT_DEPTH = 1.2, 3
+"""Supersonic flows forget fast: more differences than these would cost a fifth of the memory for nothing."""
+
+
+def depth_for(mach: np.ndarray, depth: int) -> int:
+    """How many differences an ensemble of flows at these Mach numbers keeps, of `depth` asked."""
+    return min(depth, SHORT_DEPTH) if (mach >= SHORT_FROM_MACH).all() else depth
+
+
 @distinct
 def difference_chunk(
     first,
@@ -227,6 +236,7 @@ class Anderson:
     Attributes:
         last_change, last_step: [cell, 5 x lane]; differences, combined: [cell, slot, 5 x lane].
         known: [lane] whether the last change and step belong to the lane's present state.
+        short: [lane] whether only the last `SHORT_DEPTH` differences are used.
     """
 
     def __init__(self, cells: int, free: np.ndarray, depth: int, regularisation: float = 1e-6):
@@ -241,12 +251,15 @@ class Anderson:
         self.combined = np.zeros((cells, max(depth, 1), ROW), dtype)
         self.gram = np.zeros((max(depth, 1), max(depth, 1), LANES))
         self.scale = np.ones((5, LANES), dtype)
+        self.short = np.zeros(LANES, dtype=bool)
         for lane in range(LANES):
             self.weigh(lane, free)
 
     def weigh(self, lane: int, free: np.ndarray) -> None:
         """Set the weights of a lane's variables from its free stream."""
-        speed = max(float(np.linalg.norm(free[1:4, lane])), 1.0)
+        mach = float(np.linalg.norm(free[1:4, lane]))
+        self.short[lane] = mach > SHORT_FROM_MACH - 1e-6
+        speed = max(mach, 1.0)
         self.scale[:, lane] = 1.0, 1.0 / speed, 1.0 / speed, 1.0 / speed, 1.0 / speed**2
 
     def forget(self, lane: int, free: np.ndarray) -> None:
@@ -292,10 +305,16 @@ class Anderson:
         # A condition that has just broken is left alone here; the march will find it.
         good = calm & np.isfinite(matrix).all(axis=(1, 2)) & np.isfinite(right).all(axis=(1, 2))
         matrix = np.where(good[:, None, None], matrix, 0.0)
+        age = (slot - np.arange(self.used)) % self.depth
+        left_out = self.short[:, None] & (age >= SHORT_DEPTH)
+        either = left_out[:, :, None] | left_out[:, None, :]
+        matrix = np.where(either, 0.0, matrix)
         trace = np.trace(matrix, axis1=1, axis2=2)
         good &= trace > 0
         matrix = matrix + (self.regularisation * trace)[:, None, None] * np.eye(self.used)
         matrix[~good] = np.eye(self.used)
+        matrix = np.where(either, np.eye(self.used), matrix)
+        right = np.where(left_out[..., None], 0.0, right)
         gamma = np.linalg.solve(matrix, np.where(good[:, None, None], right, 0.0))[..., 0]
         weights = np.zeros((self.depth, LANES), change.dtype)
         weights[: self.used] = gamma.T

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from spaceplane.flow import implicit
-from spaceplane.flow.acceleration import Anderson, apply_step
+from spaceplane.flow.acceleration import Anderson, apply_step, depth_for
 from spaceplane.flow.compiled import LANES, ROW
 from spaceplane.flow.equilibrium import Heating
 from spaceplane.flow.fluxes import FLUXES
@@ -76,7 +76,8 @@ class Ensemble:
         self.inverse = np.zeros((cells, 25 * LANES), dtype)
         self.per_pressure, self.ceiling = np.empty((2, LANES), dtype)
         self.scale(np.arange(LANES))
-        self.anderson = Anderson(cells, self.free, settings.anderson_depth if order == 2 else 0)
+        depth = depth_for(np.asarray(conditions.mach), settings.anderson_depth) if order == 2 else 0
+        self.anderson = Anderson(cells, self.free, depth)
 
     def seat(self, lane: int, condition: int, state: np.ndarray | None) -> None:
         """Give a lane to another condition, from `state` [cell, 5] in the kernels' order, or from the free stream."""

@@ -37,7 +37,8 @@ class FlowSettings:
             Mach 2 to 5 it falls (to 1 for the impulsive start).
         cfl_max: largest CFL number; falls to 20 from Mach 2 to 5.
         sweeps: symmetric Gauss-Seidel sweeps per iteration.
-        anderson_depth: earlier iterates combined by Anderson acceleration; 0 switches it off.
+        anderson_depth: earlier iterates combined by Anderson acceleration, at most three from Mach 1.2 up; 0 switches
+            it off.
         iterations: most iterations on the fine mesh.
         coarse_iterations: most iterations on each coarse level.
         coarse_levels: number of coarse levels to start on.
@@ -59,7 +60,7 @@ class FlowSettings:
     cfl_start: float = 25.0
     cfl_max: float = 100.0
     sweeps: int = 2
-    anderson_depth: int = 3
+    anderson_depth: int = 5
     iterations: int = 150
     coarse_iterations: int = 60
     coarse_levels: int = 3

@@ -13,6 +13,7 @@ from spaceplane.mesh.mesh import Mesh
 
 CELLS_PER_CHUNK = 16384
 CELLS_PER_BLOCK = 256
+LEAST_SHARE = 0.25
 
 
 class Topology(NamedTuple):
@@ -135,7 +136,10 @@ def gradient_stencil(
 
 
 def few_faces(mesh: Mesh) -> np.ndarray:
-    """[cell] whether an imported element has fewer than six faces; none on octrees, whose cut cells do well with few.
+    """[cell] whether an imported element has fewer than six faces, on meshes with more than `LEAST_SHARE` of these.
+
+    None on octrees, whose cut cells do well with few, nor on hexahedra of which some are collapsed at an apex: wide
+    stencils of those alone keep the flow from coming to rest.
 
     Slopes from the neighbours of tetrahedra, prisms and pyramids alone never come to rest: F. Haider, J.-P. Croisille,
     B. Courbet, "Stability analysis of the cell centered finite-volume MUSCL method on unstructured grids", Numer. Math.
@@ -144,7 +148,8 @@ def few_faces(mesh: Mesh) -> np.ndarray:
     if mesh.cell_cube_center is not None:
         return np.zeros(mesh.cells, dtype=bool)
     ends = np.concatenate([mesh.face_cells.ravel(), mesh.wall_cell, mesh.far_cell])
-    return np.bincount(ends, minlength=mesh.cells) < 6
+    few = np.bincount(ends, minlength=mesh.cells) < 6
+    return few & (few.mean() > LEAST_SHARE)
 
 
 def color_blocks(cells: int, face_cells: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
