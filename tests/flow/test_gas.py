@@ -177,10 +177,9 @@ def oblique(mach, angle):
 def test_oblique_shock_is_the_exact_jump_of_equilibrium_air(mach):
     angle = math.radians(35.0)
     mesh, streams = wedge(angle), in_air([mach])
-    solution = solve(mesh, streams, FlowSettings(coarse_levels=1))
-    # Cells that the shock grazes flicker for ever, in the perfect gas too: the flow is judged by its steady force.
-    record = solution.records[0]
-    assert np.linalg.norm(record.window_spread) < 2e-3 * np.linalg.norm(record.window_mean)
+    # First order: with slopes, cells that the shock grazes flicker for ever on this mesh, in the perfect gas too.
+    solution = solve(mesh, streams, FlowSettings(coarse_levels=1, order=1))
+    assert solution.records[0].verdict == "converged" and solution.records[0].residual_drop > 3.0
     shock, behind = oblique(mach, angle)
     x, z = mesh.cell_center[:, 0], mesh.cell_center[:, 2]
     slope = z / np.maximum(x, 1e-9)
@@ -188,10 +187,10 @@ def test_oblique_shock_is_the_exact_jump_of_equilibrium_air(mach):
     layer &= slope < math.tan(angle + 0.7 * (shock - angle))
     assert layer.sum() > 10
     density, pressure = (solution.state[layer, k, 0].astype(float) for k in (0, 4))
-    assert density.mean() == pytest.approx(behind.density / THIN, rel=0.02)
-    assert pressure.mean() * 1.4 == pytest.approx(behind.pressure / (THIN * GAS_CONSTANT * COLD), rel=0.02)
+    assert density.mean() == pytest.approx(behind.density / THIN, rel=0.005)
+    assert pressure.mean() * 1.4 == pytest.approx(behind.pressure / (THIN * GAS_CONSTANT * COLD), rel=0.005)
     warm = heat(solution.conditions, 0, density, pressure)["temperature"]
-    assert warm.mean() == pytest.approx(behind.temperature, rel=0.01)
+    assert warm.mean() == pytest.approx(behind.temperature, rel=0.005)
 
 
 def test_speed_of_sound_is_that_of_small_isentropic_changes():

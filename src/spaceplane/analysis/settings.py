@@ -69,6 +69,10 @@ READERS = {
 """Settings that are not numbers or words, and how each is read."""
 
 
+QUICK_MESH = MeshSettings(wall_cell=0.3, growth_layers=2, fine_edges=True, edge_levels=2)
+"""Of meshes of 75 000 to 90 000 cells about HORUS-2B the one nearest to a fine mesh, see docs/method.md."""
+
+
 @dataclass(frozen=True)
 class AnalyseSettings:
     """What is analysed and how; every field has a default.
@@ -83,7 +87,8 @@ class AnalyseSettings:
         controls: whether control derivatives are computed (one more body and mesh per surface).
         control_step: deflection step of control derivatives, rad.
         steps: steps of the stability derivatives.
-        mesh: how to mesh; the default, a wall cell of 0.25 m, is meant to answer in about two minutes on two cores.
+        mesh: how to mesh; the default, wall cells of 0.3 m and finer ones at sharp edges, is meant to answer in about
+            two minutes on two cores.
         flow: how to solve.
         gas: perfect, or equilibrium air at each point's altitude, without skin friction.
         increments: viscous increments over the inviscid coefficients: turbulent skin friction and a correlated base.
@@ -106,7 +111,7 @@ class AnalyseSettings:
     controls: bool = True
     control_step: float = math.radians(10.0)
     steps: DerivativeSteps = field(default_factory=DerivativeSteps)
-    mesh: MeshSettings = field(default_factory=lambda: MeshSettings(wall_cell=0.25))
+    mesh: MeshSettings = field(default_factory=lambda: QUICK_MESH)
     flow: FlowSettings = field(default_factory=FlowSettings)
     gas: str = PERFECT
     increments: IncrementSettings = VISCOUS

@@ -16,8 +16,9 @@ from spaceplane.vehicle.surface import Surface
 # A part is called thin when more than this share of the grid lines through it leave it within two cells; below that it
 # is the rim near a sharp edge, which every wing has.
 THIN_SHARE = 0.25
-# Measured at a wall cell of 0.25 m against 0.11 and 0.08 m, see docs/method.md.
+# Measured at wall cells of 0.25 m, and of 0.3 m with two levels at edges, against 0.11 m: see docs/method.md.
 THIN_COST = "HORUS-2B so meshed has 3 % (Mach 2.5) to 10 % (Mach 0.8) less lift slope"
+THIN_COST_WITH_EDGES = "HORUS-2B so meshed has 1 % less lift slope and 2 % (Mach 2.5) to 7 % (Mach 0.8) less C_m slope"
 
 
 def describe(
@@ -111,14 +112,18 @@ def _part_errors(mesh: Mesh, surface: Surface, wetted: np.ndarray) -> dict:
     return errors
 
 
-def thin_warnings(cut: CutCells, shift: np.ndarray, surface: Surface, grid: Grid, sizes: np.ndarray) -> list[str]:
+def thin_warnings(
+    cut: CutCells, shift: np.ndarray, surface: Surface, grid: Grid, sizes: np.ndarray, edge_levels: int = 0
+) -> list[str]:
     """Name the parts that are mostly thinner than two of their cells, with a typical place.
 
     Args:
         shift: [xyz] cell of the domain that the window of `cut` begins with.
         sizes: [place of `cut.thin`] edge of the cube of wall there, in finest cells.
+        edge_levels: of the settings; with two or more, thin walls cost less.
     """
     warnings = []
+    cost = THIN_COST_WITH_EDGES if edge_levels >= 2 else THIN_COST
     parts = len(surface.part_names)
     examined = np.bincount(surface.part[cut.lines.astype(np.int64)], minlength=parts)
     part = surface.part[cut.thin[:, 4].astype(np.int64)]
@@ -133,6 +138,6 @@ def thin_warnings(cut: CutCells, shift: np.ndarray, surface: Surface, grid: Grid
         warnings.append(
             f"{surface.part_names[k]}: wall thinner than two cells over {len(here) / examined[k]:.0%} of it, "
             f"for example {typical[3] * grid.cell:.3g} m at x={x:.3f} y={y:.3f} z={z:.3f} m "
-            f"(wall cell {cells[middle]:.3g} m); {THIN_COST}"
+            f"(wall cell {cells[middle]:.3g} m); {cost}"
         )
     return warnings
