@@ -8,6 +8,7 @@ import sqlite3
 import subprocess
 import sys
 import time
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
@@ -61,18 +62,34 @@ def test_numbers_that_are_not_finite_are_refused(path):
 
 
 def test_a_claim_belongs_to_one_live_process(path):
-    context = multiprocessing.get_context("spawn")
     with ResultStore(path) as store:
         assert store.claim(KEY)
-        with context.Pool(1) as pool:
-            assert pool.apply(_try_to_claim, (path,)) is False
+        with _another_process(path) as (claimed, _):
+            assert claimed is False
         store.release(KEY)
-        with context.Pool(1) as pool:
-            assert pool.apply(_try_to_claim, (path,)) is True
-            assert not store.claim(KEY)  # the pool's process lives and holds it
-            pool.terminate()
-            pool.join()
-        assert store.claim(KEY)  # its process is gone
+        with _another_process(path) as (claimed, process):
+            assert claimed is True
+            assert not store.claim(KEY)  # the other process lives and holds it
+            process.kill()
+            process.join()
+            assert store.claim(KEY)  # its process is gone
+
+
+@contextmanager
+def _another_process(path):
+    """(whether it got the claim, a process that tried and then waits)."""
+    context = multiprocessing.get_context("spawn")
+    here, there = context.Pipe()
+    process = context.Process(target=_claim_and_wait, args=(path, there), daemon=True)
+    process.start()
+    there.close()
+    try:
+        assert here.poll(60.0)
+        yield here.recv(), process
+    finally:
+        here.close()
+        process.kill()
+        process.join()
 
 
 def test_a_claim_that_nobody_renews_runs_out(path):
@@ -187,9 +204,10 @@ def test_a_read_only_file_is_refused(path):
         ResultStore(path)
 
 
-def _try_to_claim(path: Path) -> bool:
+def _claim_and_wait(path, pipe):
     with ResultStore(path) as store:
-        return store.claim(KEY)
+        pipe.send(store.claim(KEY))
+        pipe.poll(None)
 
 
 def _expiry(path: Path) -> float | None:
