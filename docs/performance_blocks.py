@@ -67,33 +67,6 @@ def roofline() -> str:
     return text + "\n\n" + table(head, rows)
 
 
-def scaling() -> str:
-    """Time and memory by cells, time by conditions."""
-    size, f = figures("scaling")
-    sizes = [int(key.split()[0]) for key in f if key.endswith(" iteration_s")]
-    rows = [
-        (
-            f"{cells:,}".replace(",", " "),
-            f"{f[f'{cells} mesh_s']:.2f} s",
-            f"{f[f'{cells} iteration_s']:.2f} s",
-            f"{f[f'{cells} ns_per_cell_and_iteration']:.0f} ns",
-            f"{f[f'{cells} peak_memory_gb']:.2f} GB",
-        )
-        for cells in sizes
-    ]
-    counts = [key.split()[0] for key in f if key.endswith("conditions solver_s")]
-    alone = f["1 conditions solver_s"]
-    by_count = [
-        (count, f"{f[f'{count} conditions solver_s']:.1f} s", f"{f[f'{count} conditions solver_s'] / alone:.1f}")
-        for count in counts
-    ]
-    cells_head = ("cells asked", "geometry and mesh", "an iteration of 16 conditions", "per cell", "peak memory")
-    return (
-        f"{size}\n\n{table(cells_head, rows)}\n\n"
-        f"{table(('conditions', 'flow, 75 000 cells', 'times one condition'), by_count)}"
-    )
-
-
 def compilation() -> str:
     """Seconds of the first and of a later start."""
     size, f = figures("compile")
@@ -122,7 +95,6 @@ def stopping() -> str:
 BLOCKS: dict[str, Callable[[], str]] = {
     "bench stages": stages,
     "bench roofline": roofline,
-    "bench scaling": scaling,
     "bench compilation": compilation,
     "stopping rule": stopping,
 }
