@@ -111,7 +111,7 @@ class AnalyseSettings:
     controls: bool = True
     control_step: float = math.radians(10.0)
     steps: DerivativeSteps = field(default_factory=DerivativeSteps)
-    mesh: MeshSettings = field(default_factory=lambda: QUICK_MESH)
+    mesh: MeshSettings = QUICK_MESH
     flow: FlowSettings = field(default_factory=FlowSettings)
     gas: str = PERFECT
     increments: IncrementSettings = VISCOUS

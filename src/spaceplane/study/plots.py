@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from spaceplane.qualities import limits
+from spaceplane.report.figure_style import FIGURE_STYLE
 from spaceplane.study.changes import Change, lateral_oscillation, mode_figure, most_unstable
 from spaceplane.study.thesis import DERIVATIVES
 
@@ -21,21 +22,7 @@ if TYPE_CHECKING:
 LOW, HIGH, NEUTRAL = "#0077bb", "#ee7733", "#333333"
 MACH_COLOURS = ("#0077bb", "#cc3311", "#222222", "#009988", "#aa3377")
 LEVEL_COLOURS = {1: "#1b7837", 2: "#b8860b", 3: "#b2182b"}
-STYLE = {
-    "font.family": "DejaVu Sans",
-    "font.size": 9,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.edgecolor": "#888888",
-    "axes.axisbelow": True,
-    "axes.grid": True,
-    "grid.color": "#e4e4e4",
-    "grid.linewidth": 0.7,
-    "xtick.color": "#444444",
-    "ytick.color": "#444444",
-    "savefig.dpi": 110,
-    "svg.hashsalt": "spaceplane",
-}
+STYLE = FIGURE_STYLE | {"font.size": 9, "savefig.dpi": 110, "svg.hashsalt": "spaceplane"}
 PARTS = (
     ("wing_width_m", "wing_thickness_m", "winglet_top_length_m", "winglet_length_m", "winglet_bottom_length_m"),
     (

@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from spaceplane.report.figure_style import FIGURE_STYLE
 from spaceplane.validation.records import Record, shown_band, shown_deviation
 
 if TYPE_CHECKING:
@@ -18,20 +19,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 COLOURS = ("#0077bb", "#cc3311", "#009988", "#aa3377", "#222222", "#ee7733")
-STYLE = {
-    "font.family": "DejaVu Sans",
-    "font.size": 8,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.edgecolor": "#888888",
-    "axes.axisbelow": True,
-    "axes.grid": True,
-    "grid.color": "#e4e4e4",
-    "grid.linewidth": 0.7,
-    "xtick.color": "#444444",
-    "ytick.color": "#444444",
-    "savefig.dpi": 90,
-}
+STYLE = FIGURE_STYLE | {"font.size": 8, "savefig.dpi": 90}
 COLUMNS, PANEL = 3, (3.9, 2.6)
 """Panels beside each other, and the size of one, inches."""
 FARTHEST = 3.0

@@ -27,14 +27,14 @@ RAYLEIGH = "Rayleigh's pitot formula (NACA 1135)"
 SEIFF = "Seiff (1962): 0.78 of the density ratio"
 BILLIG = "Billig (1967)"
 COARSE = 1.0 / 40.0
-COARSE_NOTE = "With three cells in the shock layer the stand-off is shown, not judged."
+COARSE_NOTE = "With three cells in the shock layer this is shown, not judged; Billig's row is."
 CP_NOTE = (
-    "A captured shock along the grid leaves an entropy error on the axis of about 1 %, that depends on where in a cell "
-    "the shock stands, not on the size of the cells: shown, not judged; the whole sphere is judged at 3 %."
+    "What is off depends on where in a cell the shock stands, not on the size of the cells; likely the entropy that a "
+    "captured shock along the grid leaves on the axis."
 )
 BILLIG_NOTE = (
     "Billig's formula is a fit to experiments; from Mach 5 to 25 it lies 4 to 10 % over 0.78 of the density "
-    "ratio of a perfect gas; it is shown, not judged."
+    "ratio of a perfect gas."
 )
 
 
@@ -85,9 +85,9 @@ def _rows(case: str, solution: Solution, index: int, mach: float, cell: float) -
 
     thin = cell > COARSE
     return [
-        row("stagnation Cp", stagnation_cp(mach), 0.02, RAYLEIGH, False, CP_NOTE),
+        row("stagnation Cp", stagnation_cp(mach), 0.02, RAYLEIGH, note=CP_NOTE),
         row("shock stand-off / radius", standoff_seiff(mach), 0.05, SEIFF, not thin, COARSE_NOTE if thin else ""),
-        row("shock stand-off / radius", standoff_billig(mach), 0.05, BILLIG, False, BILLIG_NOTE),
+        row("shock stand-off / radius", standoff_billig(mach), 0.05, BILLIG, note=BILLIG_NOTE),
     ]
 
 
