@@ -1,13 +1,15 @@
-"""Dead water, the shock sensor, the ceiling of total enthalpy and steps taken back."""
+"""Dead water, the shock sensor, total enthalpy, frozen limits and steps taken back."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
-from spaceplane.flow.bounds import THINNEST, at_bound, bounded
+from spaceplane.flow.bounds import FAINTEST, THINNEST, at_bound, bounded
+from spaceplane.flow.compiled import LANES
 from spaceplane.flow.deadwater import dead_water
-from spaceplane.flow.march import Caution, Steering
+from spaceplane.flow.freezing import Freezer
+from spaceplane.flow.march import Caution, Steering, highest_cfl
 from spaceplane.flow.reconstruction import shock_weight, spare_oblique
 from spaceplane.flow.residual import guarded
 from spaceplane.flow.settings import FlowSettings
@@ -90,7 +92,7 @@ def test_a_base_at_mach_10_pulls_no_vacuum():
         ensemble.change[:, [0, 4]] = -0.3 * ensemble.state[:, [0, 4]]
         ensemble.apply(0.4, calm)
     np.testing.assert_allclose(ensemble.state[:, 0], 1e-3, rtol=1e-6)
-    np.testing.assert_allclose(ensemble.state[:, 4], 1e-3 / GAMMA, rtol=1e-6)
+    np.testing.assert_allclose(ensemble.state[:, 4], 0.5 * 1e-3**GAMMA / GAMMA, rtol=1e-6)
 
 
 @pytest.mark.parametrize(("mach_behind", "kept"), [(0.8, 0.0), (1.35, 0.458), (2.0, 1.0)])
@@ -140,7 +142,7 @@ def test_increments_stop_at_the_least_density_and_pressure():
     thin = np.float64(2 * THINNEST)
     dr, dp = bound(thin, thin, -1.0, -1.0, GAMMA)
     assert thin + dr == pytest.approx(THINNEST)
-    assert GAMMA * (thin + dp) == pytest.approx(THINNEST)
+    assert GAMMA * (thin + dp) == pytest.approx(FAINTEST)
     assert at(thin + dr, thin, GAMMA) and at(thin, thin + dp, GAMMA) and not at(thin, thin, GAMMA)
     assert bound(thin, thin, 1.0, 2.0, GAMMA) == (1.0, 2.0)
 
@@ -153,3 +155,68 @@ def test_bases_at_high_mach_numbers_have_a_steady_state():
     patient = FlowSettings(residual_drop=16.0, least_drop=16.0, iterations=80)
     solution = solve(mesh, FlowConditions(mach, np.full(3, np.radians(5.0)), 0.0 * mach), patient)
     assert all(-record.residual_history.min() > 3.5 for record in solution.records)
+
+
+def test_the_largest_cfl_number_falls_with_the_mach_number_and_stays_within_what_is_asked():
+    mach = np.array([0.8, 2.0, 3.5, 5.0, 10.0, 25.0])
+    np.testing.assert_allclose(highest_cfl(mach, Caution(25.0, 100.0)), [100, 100, 80, 60, 20, 20])
+    np.testing.assert_allclose(highest_cfl(mach, Caution(5.0, 5.0)), 5.0)
+
+
+class Standing:
+    """A history whose residual gains `gain` decades over any window while its force wanders by `spread`."""
+
+    def __init__(self, gain=0.0, spread=0.0, age=50):
+        self.age, self.gain, self.spread = age, (lambda window: gain), (lambda window: spread)
+
+
+def test_lanes_freeze_when_nothing_is_gained_and_thaw_when_that_was_wrong():
+    freezer, lanes = Freezer(), np.ones(LANES)
+    histories = [Standing()] * LANES
+    histories[:3] = Standing(gain=0.1), Standing(spread=0.01), Standing(age=20)
+    drop = 2.0 * lanes
+    drop[3:5] = 1.0, 4.5
+    freezer.update(histories, lanes, drop)
+    assert not freezer.frozen.any()
+    np.testing.assert_array_equal(np.flatnonzero(~freezer.held), [0, 2])
+    freezer.update(histories, lanes, drop)
+    np.testing.assert_array_equal(np.flatnonzero(~freezer.frozen), [0, 1, 2, 3, 4])
+    norms = lanes.copy()
+    norms[6] = 2.1
+    freezer.update(histories, norms, drop)
+    for _ in range(20):
+        assert not freezer.frozen[6] and freezer.frozen[7]
+        freezer.update(histories, lanes, drop)
+    assert freezer.frozen[6]
+    freezer.begin(np.array([6]))
+    assert not freezer.frozen[6] and not freezer.held[6]
+
+
+def test_frozen_lanes_keep_their_limits_and_others_do_not():
+    ensemble = ensemble_on(sphere(8, 6))
+    rng = np.random.default_rng(4)
+    ensemble.state *= 1 + 0.1 * rng.uniform(-1, 1, ensemble.state.shape)
+    ensemble.reconstruct()
+    before, sensor, limits = ensemble.gradient.copy(), ensemble.sensor.copy(), ensemble.limits.copy()
+    ensemble.frozen[1] = 1
+    ensemble.state *= 1 + 0.1 * rng.uniform(-1, 1, ensemble.state.shape)
+    ensemble.reconstruct()
+    lanes = before.shape[-1] // 5
+    by_lane = lambda a: a.reshape(*a.shape[:-1], 5, lanes)  # noqa: E731
+    same = (by_lane(ensemble.limits) == by_lane(limits)).all(axis=(0, 1))
+    assert same[1] and not same[0]
+    np.testing.assert_array_equal(ensemble.sensor[:, 1], sensor[:, 1])
+    assert (ensemble.sensor[:, 0] != sensor[:, 0]).any()
+
+
+def test_freezing_changes_no_gradient_but_by_the_byte_it_is_kept_in():
+    ensemble = ensemble_on(sphere(8, 6))
+    ensemble.state *= 1 + 0.1 * np.random.default_rng(5).uniform(-1, 1, ensemble.state.shape)
+    ensemble.reconstruct()
+    before = ensemble.gradient.copy()
+    ensemble.frozen[:] = 1
+    ensemble.reconstruct()
+    unlimited = ensemble_on(sphere(8, 6), limiter="none", flux="hllc", wake_calming=0.0)
+    unlimited.state[:] = ensemble.state
+    unlimited.reconstruct()
+    assert (np.abs(ensemble.gradient - before) <= 0.51 / 255 * np.abs(unlimited.gradient) + 1e-12).all()

@@ -156,8 +156,9 @@ def step_chunk(
             y = step[PRS + n] / rows[i, PRS + n]
             size = max(max(-x, half * x), max(-y, half * y))
             share = largest / size if size > largest else one
+            wild = step[VX + n] * step[VX + n] + step[VY + n] * step[VY + n] + step[VZ + n] * step[VZ + n]
             # Not a number compares false.
-            share = share if size < real(1e30) else zero
+            share = share if max(size, zero) + wild < real(1e30) else zero
             count[n] += one if share < one else zero
             pace[i, n] = max(half * pace[i, n], real(SLOWEST)) if share < one else min(real(1.5) * pace[i, n], one)
             factor[RHO + n] = share

@@ -5,19 +5,23 @@ from __future__ import annotations
 from spaceplane.flow.compiled import inlined
 
 THINNEST = 1e-3
-"""Least density and pressure, on the free stream's: bases at Mach 10 pull a vacuum that single precision cannot hold.
-At Mach 3 it is 1.6e-4 in Cp, at Mach 10 1.4e-5."""
+"""Least density, on the free stream's: bases at Mach 10 pull a vacuum that single precision cannot hold."""
+
+FAINTEST = 0.5 * THINNEST**1.4
+"""Least pressure, on the free stream's: half of what air at the least density has that came there without loss. Were it
+higher, such air would be heated, and go on expanding to more than the free stream's total enthalpy. At Mach 3 it is
+5e-6 in Cp."""
 
 
 @inlined
 def bounded(r, p, dr, dp, gamma):
     """The increments of density and pressure, raised where they would lead below the least values."""
-    thinnest = type(r)(THINNEST)
-    return max(dr, thinnest - r), max(dp, thinnest / gamma - p)
+    real = type(r)
+    return max(dr, real(THINNEST) - r), max(dp, real(FAINTEST) / gamma - p)
 
 
 @inlined
 def at_bound(r, p, gamma):
     """Whether a cell stands at the least density or pressure: what it draws from its neighbours is the bound's."""
-    nearly = type(r)(1.00001 * THINNEST)
-    return r <= nearly or gamma * p <= nearly
+    real = type(r)
+    return r <= real(1.00001 * THINNEST) or gamma * p <= real(1.00001 * FAINTEST)

@@ -72,6 +72,8 @@ class Ensemble:
         self.gradient = np.zeros((cells, 3, ROW), dtype)
         self.sensor = np.zeros((cells, LANES), dtype)
         self.hold = np.zeros(LANES, dtype)
+        self.frozen = np.zeros(LANES, dtype)
+        self.limits = np.zeros((cells, ROW), np.uint8)
         self.pace = np.ones((cells, LANES), dtype)
         self.inverse = np.zeros((cells, 25 * LANES), dtype)
         self.per_pressure, self.ceiling = np.empty((2, LANES), dtype)
@@ -87,6 +89,7 @@ class Ensemble:
         self.state[:, :, lane] = self.free[:, lane] if state is None else state
         self.scale(np.array([lane]))
         self.hold[lane] = 0
+        self.frozen[lane] = 0
         self.sensor[:, lane] = 0
         self.pace[:, lane] = 1
         self.mirror(self.state, np.arange(LANES) == lane)
@@ -129,6 +132,8 @@ class Ensemble:
             self.per_pressure,
             self.dtype(self.settings.wake_calming),
             self.hold,
+            self.frozen,
+            self.limits,
         )
 
     def balance(self) -> None:

@@ -11,16 +11,14 @@ import numpy as np
 
 from spaceplane.flow.compiled import LANES
 from spaceplane.flow.ensemble import Ensemble
+from spaceplane.flow.freezing import Freezer
 from spaceplane.flow.settings import FlowSettings
 
 ACCELERATED_BELOW_MACH, ACCELERATED_AFTER_DROP = 2.0, 2.0
 """Anderson acceleration drives blunt-base flows apart at Mach 2.5 and more, until they are close to steady."""
 
-HOLD_SENSOR_AFTER = 20
-"""Iterations after which, while the residual is near its best, the shock sensor may only rise: cells stop flipping."""
-
-FAST_FALL = 0.3
-"""Decades by which a residual must fall in a window to be worth waiting for, once the forces stand."""
+WORTH_WAITING = 0.1
+"""Decades that a residual must gain in two windows to be worth waiting for, once the forces stand."""
 
 REJECTED_RISE = 2.5
 """A step after which the residual is this many times the last one is taken back."""
@@ -39,6 +37,11 @@ class History:
     failure: str = ""
     done: bool = False
 
+    @property
+    def age(self) -> int:
+        """Iterations done."""
+        return max(len(self.residual) - 1, 0)
+
     def drop(self) -> float:
         """Decades that the residual has fallen since the first iteration."""
         if not self.residual:
@@ -46,9 +49,13 @@ class History:
         first, last = self.residual[0], self.residual[-1]
         return float(np.log10(max(first, 1e-300) / max(last, 1e-300)))
 
-    def fall(self, window: int) -> float:
-        """Decades that the residual has fallen over the last `window` iterations; there must be more than those."""
-        return float(np.log10(max(self.residual[-1 - window], 1e-300) / max(self.residual[-1], 1e-300)))
+    def gain(self, window: int) -> float:
+        """Decades by which the best residual of the last `window` iterations is below the best one before them;
+        infinite where there is none before."""
+        if len(self.residual) <= window:
+            return float("inf")
+        before, since = min(self.residual[:-window]), min(self.residual[-window:])
+        return float(np.log10(max(before, 1e-300) / max(since, 1e-300)))
 
     def spread(self, window: int) -> float:
         """Half peak-to-peak of the force over the last `window` iterations, on the mean force's size."""
@@ -76,8 +83,10 @@ def starting_cfl(mach: np.ndarray, caution: Caution, impulsive: bool) -> np.ndar
 
 
 def highest_cfl(mach: np.ndarray, caution: Caution) -> np.ndarray:
-    """[lane] largest CFL number: `cfl_max`, falling to 20 between Mach 2 and 5, where larger ones gain nothing."""
-    return np.minimum(caution.cfl_max, 20.0 + np.clip((5.0 - mach) / 3.0, 0.0, 1.0) * max(caution.cfl_max - 20.0, 0.0))
+    """[lane] largest CFL number: `cfl_max` up to Mach 2, 60 at Mach 5, from Mach 10 on 20, where larger ones lose more
+    than they gain."""
+    most = [caution.cfl_max, min(caution.cfl_max, 60.0), min(caution.cfl_max, 20.0)]
+    return np.interp(mach, [2.0, 5.0, 10.0], most)
 
 
 class Steering:
@@ -138,9 +147,9 @@ class Steering:
 def converged(history: History, settings: FlowSettings) -> bool:
     """Whether a condition is good on the fine mesh: residual and force window together.
 
-    Either the residual fell by `residual_drop` with forces within twice the tolerance; or, where it falls slowly, by
-    half a decade more than `least_drop` with forces standing over two windows, or by `least_drop` with forces standing
-    over three. A residual that falls fast is let fall: the rest costs little.
+    Either the residual fell by `residual_drop` with forces within twice the tolerance; or, where it gains nothing more,
+    by half a decade more than `least_drop` with forces standing over two windows, or by `least_drop` with forces
+    standing over three.
     """
     window, tolerance, drop = settings.window, settings.force_tolerance, history.drop()
     length = len(history.residual)
@@ -148,7 +157,7 @@ def converged(history: History, settings: FlowSettings) -> bool:
         return False
     if drop >= settings.residual_drop:
         return history.spread(window) < 2 * tolerance
-    if history.fall(window) > FAST_FALL:
+    if history.gain(2 * window) > WORTH_WAITING:
         return False
     if drop >= settings.least_drop + 0.5:
         return length > 2 * window and history.spread(2 * window) < tolerance
@@ -195,6 +204,7 @@ def march(
     mach = ensemble.conditions.mach
     histories = {condition: History() for condition in range(len(mach))}
     steering = Steering(mach[ensemble.lanes], caution, impulsive)
+    freezer = Freezer()
     waiting = deque(range(ensemble.count, len(mach)))
     active = np.arange(LANES) < ensemble.count
     for iteration in count():
@@ -210,6 +220,7 @@ def march(
                 condition = waiting.popleft()
                 ensemble.seat(lane, condition, None if start is None else start[:, :, condition])
             steering.begin(seated, mach[ensemble.lanes[seated]])
+            freezer.begin(seated)
             norms = ensemble.evaluate()
             new = np.isin(np.arange(LANES), seated)
             active |= new
@@ -220,8 +231,11 @@ def march(
         here = [histories[int(condition)] for condition in ensemble.lanes]
         drop = np.array([history.drop() for history in here])
         calm = steering.advance(norms, drop)
-        age = np.array([len(history.residual) - 1 for history in here])
-        ensemble.hold[:] = (age >= HOLD_SENSOR_AFTER) & (norms < 2.0 * steering.best)
+        age = np.array([history.age for history in here])
+        if ensemble.order == 2:
+            freezer.update(here, norms, drop)
+            ensemble.hold[:] = freezer.held
+            ensemble.frozen[:] = freezer.frozen
         quiet = (drop > FORMED_AGAIN_DROP) & (norms < 2.0 * steering.best) & ~undone
         ensemble.correct(steering.cfl, again=~quiet | (age % FORMED_AGAIN_EVERY == 0))
         steering.limited = ensemble.apply(caution.largest, calm)

@@ -11,6 +11,9 @@ from spaceplane.flow.compiled import LANES, PRS, RHO, ROW, VX, VY, VZ, distinct,
 from spaceplane.flow.deadwater import dead_water
 from spaceplane.flow.limiters import barth_jespersen, venkatakrishnan
 
+FINEST = 255
+"""Steps in which the factor on a frozen gradient is kept: one byte."""
+
 
 @inlined
 def limit(kind, room, step, eps2):
@@ -104,6 +107,8 @@ def gradient_chunk(
     per_pressure,
     calming,
     hold,
+    frozen,
+    limits,
     high,
     low,
     phi,
@@ -151,6 +156,7 @@ def gradient_chunk(
             ratio = max(high[PRS + n] / p, p / low[PRS + n])
             squeeze = -(gx[VX + n] + gy[VY + n] + gz[VZ + n]) * h / math.sqrt(gamma * p / r)
             theta = max(shock_weight(ratio, squeeze, theta_low, theta_high), hold[n] * sensor[i, n])
+            theta = sensor[i, n] if frozen[n] > zero else theta
             sensor[i, n] = theta
             cut[n] = theta
             highest = max(highest, theta)
@@ -175,8 +181,14 @@ def gradient_chunk(
                 low[m] = real(0.5) * (up - down)
             for e in range(start[i], start[i + 1]):
                 restrict(limiter, gx, gy, gz, reach[e, 0], reach[e, 1], reach[e, 2], high, low, eps2, phi)
+        for k in range(0, ROW, LANES):
+            for n in range(LANES):
+                factor = phi[k + n] * keep[k + n]
+                kept = frozen[n] > zero
+                limits[i, k + n] = limits[i, k + n] if kept else np.uint8(factor * real(FINEST) + real(0.5))
+                phi[k + n] = real(limits[i, k + n]) * real(1 / FINEST) if kept else factor
         for m in range(ROW):
-            factor = phi[m] * keep[m]
+            factor = phi[m]
             gradient[i, 0, m] = factor * gx[m]
             gradient[i, 1, m] = factor * gy[m]
             gradient[i, 2, m] = factor * gz[m]
@@ -184,7 +196,20 @@ def gradient_chunk(
 
 @kernel
 def gradients(
-    topology, state, gradient, sensor, limiter, theta_low, theta_high, smallness, gamma, per_pressure, calming, hold
+    topology,
+    state,
+    gradient,
+    sensor,
+    limiter,
+    theta_low,
+    theta_high,
+    smallness,
+    gamma,
+    per_pressure,
+    calming,
+    hold,
+    frozen,
+    limits,
 ):
     """Fill `gradient` [cell, axis, 5 x lane] and `sensor` [cell, lane].
 
@@ -198,6 +223,8 @@ def gradients(
         smallness: eps^2 of the limiter = min(smallness * size^3, 1e-2) on the local scale of each variable.
         per_pressure: [lane] 1/q_inf; calming: most that is taken out of slopes in dead water.
         hold: [lane] 1 where the sensor may only rise from here on, else 0.
+        frozen: [lane] 1 where sensor and factors on the gradients stay what they are, else 0.
+        limits: [cell, 5 x lane] those factors on 0 to 255, kept up to date for lanes that freeze later.
     """
     rows = state.reshape(state.shape[0], ROW)
     chunk_cells = topology.chunk_cells
@@ -228,6 +255,8 @@ def gradients(
             per_pressure,
             calming,
             hold,
+            frozen,
+            limits,
             high,
             low,
             phi,

@@ -35,7 +35,7 @@ class FlowSettings:
         wall_stiffness: share of the acoustic response to flow through the wall added to the wall pressure (0 to 1).
         cfl_start: first pseudo-time CFL number; the impulsive start on the coarsest level uses a fifth of it, and from
             Mach 2 to 5 it falls (to 1 for the impulsive start).
-        cfl_max: largest CFL number; falls to 20 from Mach 2 to 5.
+        cfl_max: largest CFL number; falls to 60 at Mach 5 and to 20 from Mach 10 on.
         sweeps: symmetric Gauss-Seidel sweeps per iteration.
         anderson_depth: earlier iterates combined by Anderson acceleration, at most three from Mach 1.2 up; 0 switches
             it off.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from functools import partial
 
@@ -14,12 +15,15 @@ from spaceplane.flow.ensemble import Ensemble, free_stream
 from spaceplane.flow.march import Caution, History, converged, finished, march
 from spaceplane.flow.prolong import prolong
 from spaceplane.flow.settings import FlowSettings, check
-from spaceplane.flow.solution import ConvergenceRecord, FlowConditions, Solution
+from spaceplane.flow.solution import EQUILIBRIUM, PERFECT, ConvergenceRecord, FlowConditions, Solution
 from spaceplane.flow.topology import prepare
 from spaceplane.mesh.mesh import Mesh
 from spaceplane.progress import Progress, silent
 
 LARGEST_BATCH = 64
+
+BOLDEST = {PERFECT: math.inf, EQUILIBRIUM: 5.0}
+"""Largest CFL number by gas: beyond it shocks in equilibrium air, even of first order, never come to rest."""
 
 
 def solve(
@@ -60,7 +64,8 @@ def solve(
     seconds = {"prepare": prepared - began}
 
     job = _Job(levels, topologies, conditions, settings, say)
-    caution = Caution(settings.cfl_start, settings.cfl_max)
+    boldest = BOLDEST[conditions.gas]
+    caution = Caution(min(settings.cfl_start, boldest), min(settings.cfl_max, boldest))
     # Slow flows wait with a lane of their own while others share one: they begin first.
     for which in batches(np.argsort(conditions.mach, kind="stable")):
         job.run(which, caution, seconds)
@@ -68,7 +73,8 @@ def solve(
     if len(retry):
         say("retry", 0, len(retry), f"{len(retry)} conditions once more, carefully")
         for which in batches(retry):
-            job.run(which, Caution(min(5.0, settings.cfl_start), min(25.0, settings.cfl_max), 1.2, 0.25), seconds)
+            careful = Caution(min(5.0, settings.cfl_start), min(25.0, settings.cfl_max, boldest), 1.2, 0.25)
+            job.run(which, careful, seconds)
     if cold:
         CACHE.mark_complete(kernels)
     records = tuple(judge(job.histories[c], settings) for c in range(len(conditions)))

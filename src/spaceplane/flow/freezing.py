@@ -1,0 +1,75 @@
+"""What is done where limiters keep a residual from falling.
+
+A shock sensor and a limiter that keep flipping in a few cells keep a residual from falling, though the forces stand
+still. Where a residual gains nothing any more, the lane's sensor may first only rise. If the forces stand and still
+nothing is gained, the lane keeps the sensor and the factors on its slopes: what is solved is the second-order scheme
+with the limits of a flow whose forces already stand, and it converges (V. Venkatakrishnan, J. Comput. Phys. 118 (1995)
+120-130, shows both the stall and what freezing does to it).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Protocol
+
+import numpy as np
+
+from spaceplane.flow.compiled import LANES
+
+SPAN = 6
+"""Iterations without a gain after which something is done."""
+
+FROM_AGE = 20
+"""Iterations in which flows form: nothing is held in them."""
+
+FROM_DROP, TO_DROP = 1.5, 4.0
+"""Decades below which a flow is not formed yet, and above which single precision is what stops it."""
+
+STEADY = 2e-4
+"""Half peak-to-peak of the force over the span, on its size, that counts as standing."""
+
+THAWED_BY, REST = 2.0, 20
+"""Rise of the residual since the freezing at which a lane is let go, and iterations until it may freeze again."""
+
+
+class Judged(Protocol):
+    """What is asked of a lane's history; see `march.History`."""
+
+    @property
+    def age(self) -> int: ...
+
+    def gain(self, window: int) -> float: ...
+
+    def spread(self, window: int) -> float: ...
+
+
+class Freezer:
+    """Which lanes of an ensemble are frozen.
+
+    Attributes:
+        held: [lane] whether the shock sensor may only rise.
+        frozen: [lane] whether sensor and limits are kept.
+    """
+
+    def __init__(self):
+        self.held, self.frozen = np.zeros((2, LANES), dtype=bool)
+        self._mark, self._rest = np.zeros((2, LANES))
+
+    def begin(self, lanes: np.ndarray) -> None:
+        """Let the lanes of these indices go, which now hold other flows."""
+        self.held[lanes] = self.frozen[lanes] = False
+        self._rest[lanes] = 0
+
+    def update(self, histories: Sequence[Judged], norms: np.ndarray, drop: np.ndarray) -> None:
+        """Judge all lanes by their histories, residual and its drop in decades [lane]."""
+        thawed = self.frozen & (norms > THAWED_BY * self._mark)
+        self.frozen &= ~thawed
+        self._rest = np.where(thawed, REST, np.maximum(self._rest - 1, 0))
+        for lane in np.flatnonzero(~self.frozen & (self._rest == 0)):
+            history = histories[lane]
+            if history.age <= FROM_AGE or history.gain(SPAN) > 0.0:
+                continue
+            if self.held[lane] and FROM_DROP < drop[lane] < TO_DROP and history.spread(SPAN) < STEADY:
+                self.frozen[lane] = True
+                self._mark[lane] = norms[lane]
+            self.held[lane] = True
