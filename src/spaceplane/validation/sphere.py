@@ -11,7 +11,7 @@ from spaceplane.aero.integrate import integrate
 from spaceplane.flow.solution import FlowConditions, Solution
 from spaceplane.mesh.settings import MeshSettings
 from spaceplane.validation import bodies, sphere_nose
-from spaceplane.validation.blunt import DRAG_LOTH, standoff_billig
+from spaceplane.validation.blunt import DRAG_LOTH
 from spaceplane.validation.cases import Progress
 from spaceplane.validation.flowcase import part_of_wall, reference_of, solve_body
 from spaceplane.validation.records import Record
@@ -21,7 +21,6 @@ MACHS = (0.5, 1.5, 2.0, 3.0, 5.0, 10.0)
 WALL_LAYERS = 6
 """Layers of the finest cells: enough to hold the bow shock from Mach 2 up."""
 RAYLEIGH = "Rayleigh's pitot formula (NACA 1135)"
-BILLIG = "Billig (1967)"
 LOTH = "Loth et al. (2021), Re 1e6"
 DRAG_NOTE = "The published value includes viscous separation at the base."
 PARADOX = "d'Alembert's paradox"
@@ -73,9 +72,8 @@ def sphere_records(solution: Solution) -> list[Record]:
 
         records.append(row("stagnation Cp", stagnation_cp(mach), nose[index], 0.03, RAYLEIGH))
         if mach > 1.0:
-            records.append(
-                row("shock stand-off / radius", standoff_billig(mach), standoff(solution, index), 0.1, BILLIG)
-            )
+            found = standoff(solution, index) if good else None
+            records += sphere_nose.standoff_rows(CASE, where, float(mach), found, (0.05, 0.1))
             front, base = float(values.CA_forebody), float(values.CA_base)
             share = f"{where}: C_D {front:.3f} of the front half and {base:.3f} of the base."
             records.append(row("C_D", DRAG_LOTH[float(mach)], values.CD, 0.1, LOTH, note=f"{share} {DRAG_NOTE}"))
