@@ -30,7 +30,8 @@ LEAST_MACH, MOST_MACH = 1.5, 50.0
 LEAST_GAMMA, MOST_GAMMA = 1.2, 1.67
 FEWEST, MOST = 6, 40
 LAST_ANGLE = math.radians(85.0)
-"""Where the flow leaves: supersonic along theta from wall to shock at all these Mach numbers."""
+LEAST_ANGLE, MOST_ANGLE = math.radians(80.0), math.radians(90.0)
+"""Where the flow leaves, rad, and what is allowed: there it is supersonic along theta from wall to shock."""
 _ITERATIONS, _TOLERANCE = 40, 1e-9
 # Weight of wall and shock against the equations of the flow.
 _BOUNDARY = 10.0
@@ -73,7 +74,7 @@ class SphereFlow:
         """Pressure coefficient on the sphere at angles from the stagnation point, rad.
 
         Raises:
-            InputError: an angle beyond `LAST_ANGLE`.
+            InputError: an angle beyond the last ray.
         """
         theta = self._inside(theta)
         # the speed over the sine of the angle is even
@@ -82,21 +83,35 @@ class SphereFlow:
         pressure = stagnation * (1.0 - speed**2) ** (self.gamma / (self.gamma - 1.0))
         return (pressure - 1.0) * 2.0 / (self.gamma * self.mach**2)
 
+    def front_drag(self) -> float:
+        """Drag coefficient on pi R^2 of the wall between the stagnation point and the last ray."""
+        node, weight = np.polynomial.legendre.leggauss(64)
+        half = 0.5 * float(self.theta[-1])
+        theta = half * (1.0 + node)
+        return float(half * (weight * self.wall_cp(theta) * np.sin(2.0 * theta)).sum())
+
     def _inside(self, theta: ArrayLike) -> np.ndarray:
         theta = np.asarray(theta, dtype=float)
-        if not (np.abs(theta) <= LAST_ANGLE + 1e-12).all():
-            raise InputError(f"theta_deg: at most {math.degrees(LAST_ANGLE):g} deg from the stagnation point allowed")
+        if not (np.abs(theta) <= self.theta[-1] + 1e-12).all():
+            last = math.degrees(self.theta[-1])
+            raise InputError(f"theta_deg: at most {last:.4g} deg from the stagnation point allowed")
         return theta
 
 
-def sphere_flow(mach: float, gamma: float = 1.4, points: int = 14, angles: int = 16) -> SphereFlow:
+def sphere_flow(
+    mach: float, gamma: float = 1.4, points: int = 14, angles: int = 16, last_angle: float = LAST_ANGLE
+) -> SphereFlow:
     """Solve the flow between the front of a sphere and its shock.
+
+    Against more points these have the stand-off within 4e-6 and Cp within 5e-5 from Mach 2 up; at Mach 1.5 it takes 18
+    points and 22 rays to that, and these have 1.5e-4 and 4e-3.
 
     Args:
         mach: free-stream Mach number, `LEAST_MACH` to `MOST_MACH`.
         gamma: ratio of specific heats, `LEAST_GAMMA` to `MOST_GAMMA`.
         points: collocation points from wall to shock.
-        angles: rays from the axis to `LAST_ANGLE`.
+        angles: rays from the axis to the last.
+        last_angle: of the last ray, rad; it takes more rays, and at Mach 1.5 with gamma 1.67 it fails, at 90 deg.
 
     Raises:
         InputError: a number out of its range.
@@ -107,10 +122,11 @@ def sphere_flow(mach: float, gamma: float = 1.4, points: int = 14, angles: int =
         ("gamma", gamma, LEAST_GAMMA, MOST_GAMMA),
         ("points", points, FEWEST, MOST),
         ("angles", angles, FEWEST, MOST),
+        ("last_angle", last_angle, LEAST_ANGLE, MOST_ANGLE),
     ):
         if not low <= value <= high:
             raise InputError(f"{name} = {value}: allowed {low:g} to {high:g}")
-    problem = _Problem(mach, gamma, points, angles)
+    problem = _Problem(mach, gamma, _grid(points, angles, last_angle))
     unknown = problem.guess()
     residual = problem.residual(unknown)
     for _ in range(_ITERATIONS):
@@ -135,10 +151,9 @@ class _Grid:
 class _Problem:
     """The collocated equations. Unknowns: u, v, sigma [point, angle] each, then the shock's distance [angle]."""
 
-    def __init__(self, mach: float, gamma: float, points: int, angles: int):
-        self.mach, self.gamma = mach, gamma
-        self.grid = _grid(points, angles)
-        self.shape = (points, angles)
+    def __init__(self, mach: float, gamma: float, grid: _Grid):
+        self.mach, self.gamma, self.grid = mach, gamma, grid
+        self.shape = (len(grid.layer), len(grid.theta))
         self.fastest = math.sqrt(2.0 / ((gamma - 1.0) * mach**2) + 1.0)  # sqrt(2 H) over the stream's speed
         self.wall_sigma = float(np.log(self._behind(np.array(1.0))[0]))
 
@@ -283,10 +298,10 @@ def _shortened(
     return trial, problem.residual(trial), share
 
 
-def _grid(points: int, angles: int) -> _Grid:
-    """Chebyshev points: on [0, 1] from wall to shock; the positive half of [-LAST_ANGLE, LAST_ANGLE] in theta."""
+def _grid(points: int, angles: int, last: float) -> _Grid:
+    """Chebyshev points: on [0, 1] from wall to shock; the positive half of [-last, last] in theta."""
     layer = 0.5 * (1.0 - np.cos(np.pi * np.arange(points) / (points - 1)))
-    both = LAST_ANGLE * np.cos(np.pi * np.arange(2 * angles) / (2 * angles - 1))
+    both = last * np.cos(np.pi * np.arange(2 * angles) / (2 * angles - 1))
     whole = _differentiation(both)
     upper, mirrored = whole[:angles, :angles], whole[:angles, angles:][:, ::-1]
     flip = slice(None, None, -1)
