@@ -41,7 +41,7 @@ def run(fine: bool, progress: Progress) -> list[Record]:
     """Stagnation Cp, shock stand-off and drag of a sphere of radius 1 m.
 
     Args:
-        fine: 48 wall cells per diameter instead of 24, and a third mesh of the nose.
+        fine: 48 wall cells per diameter instead of 24, and three meshes of the nose instead of one.
         progress: told what runs.
     """
     cell = 2.0 / (48 if fine else 24)

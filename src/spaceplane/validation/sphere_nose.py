@@ -18,8 +18,8 @@ from spaceplane.validation.flowcase import part_of_wall, solve_body
 from spaceplane.validation.records import Record
 
 MACHS = (5.0, 10.0, 25.0)
-CELLS = (1.0 / 24.0, 1.0 / 44.0, 1.0 / 64.0)
-"""Cells at the nose, radii: three, six and eight between shock and wall."""
+CELLS = (1.0 / 48.0, 1.0 / 68.0, 1.0 / 96.0)
+"""Cells at the nose, radii: about six, nine and twelve between shock and wall."""
 NOSE, SONIC = math.radians(20.0), math.radians(60.0)
 """Angles from the nose within which the shock layer has such cells, and cells twice as large: to beyond the sonic line,
 behind which nothing acts on the nose. The rest of the sphere has cells four times as large."""
@@ -27,10 +27,6 @@ DOMAIN = ((-1.0, -2.5, -2.5), (3.0, 2.5, 2.5))
 RAYLEIGH = "Rayleigh's pitot formula (NACA 1135)"
 FITTED = "Perfect gas with fitted shock, solved here"
 BILLIG = "Billig (1967)"
-CP_NOTE = (
-    "What is off depends on where in a cell the shock stands, not on the size of the cells; likely the entropy that a "
-    "captured shock along the grid leaves on the axis."
-)
 
 
 def run(case: str, fine: bool, progress: Progress) -> list[Record]:
@@ -38,12 +34,12 @@ def run(case: str, fine: bool, progress: Progress) -> list[Record]:
 
     Args:
         case: name of the validation case they belong to.
-        fine: the finest of the three meshes as well.
+        fine: all three meshes, else the coarsest.
         progress: told what runs.
     """
     records: list[Record] = []
     zero = np.zeros(len(MACHS))
-    for cell in CELLS if fine else CELLS[:-1]:
+    for cell in CELLS if fine else CELLS[:1]:
         progress(f"nose with cells of 1/{1 / cell:g} radius", 0.5)
         settings = MeshSettings(wall_cell=4.0 * cell, growth_layers=1, domain=DOMAIN)
         conditions = FlowConditions(np.array(MACHS), zero, zero)
@@ -90,7 +86,19 @@ def standoff_rows(
     name = "shock stand-off / radius"
     return [
         Record(case, name, where, "-", exact, computed, bands[0], "relative", FITTED),
-        Record(case, name, where, "-", billig, computed, bands[1], "relative", BILLIG, gate=judged, note=note),
+        Record(
+            case,
+            f"{name}, beside Billig's fit",
+            where,
+            "-",
+            billig,
+            computed,
+            bands[1],
+            "relative",
+            BILLIG,
+            gate=judged,
+            note=note,
+        ),
     ]
 
 
@@ -99,17 +107,21 @@ def _rows(case: str, solution: Solution, index: int, mach: float, cell: float) -
     good = solution.records[index].good
     cp = nose_cp(solution, index) if good else None
     return [
-        Record(case, "stagnation Cp", where, "-", stagnation_cp(mach), cp, 0.02, "relative", RAYLEIGH, note=CP_NOTE),
+        Record(case, "stagnation Cp", where, "-", stagnation_cp(mach), cp, 0.02, "relative", RAYLEIGH),
         *standoff_rows(case, where, mach, standoff(solution, index) if good else None, (0.05, 0.05)),
     ]
 
 
 def nose_cp(solution: Solution, condition: int) -> float:
-    """Cp at the stagnation point: a parabola in the distance from the axis through the wall faces nearest to it."""
+    """Cp at the stagnation point: a parabola in the distance from the axis through the wall within `NOSE` of it.
+
+    Single faces scatter by where in a cell the shock ahead of them stands; on the exact flow the parabola ends 0.05 %
+    off.
+    """
     mesh = solution.mesh
-    radius = np.hypot(mesh.wall_center[:, 1], mesh.wall_center[:, 2]) + 1e6 * ~part_of_wall(mesh, "forebody")
-    near = np.argsort(radius)[:24]
-    powers = np.stack([np.ones(len(near)), radius[near] ** 2], axis=1)
+    radius = np.hypot(mesh.wall_center[:, 1], mesh.wall_center[:, 2])
+    near = part_of_wall(mesh, "forebody") & (radius < math.sin(NOSE))
+    powers = np.stack([np.ones(int(near.sum())), radius[near] ** 2], axis=1)
     return float(np.linalg.lstsq(powers, solution.wall_cp()[near, condition].astype(float), rcond=None)[0][0])
 
 
