@@ -18,7 +18,7 @@ from spaceplane.validation.flowcase import part_of_wall, solve_body
 from spaceplane.validation.records import Record
 
 MACHS = (5.0, 10.0, 25.0)
-CELLS = (1.0 / 48.0, 1.0 / 68.0, 1.0 / 96.0)
+CELLS = (1.0 / 48.0, 1.0 / 68.0, 1.0 / 88.0)
 """Cells at the nose, radii: about six, nine and twelve between shock and wall."""
 NOSE, SONIC = math.radians(20.0), math.radians(60.0)
 """Angles from the nose within which the shock layer has such cells, and cells twice as large: to beyond the sonic line,
