@@ -6,36 +6,27 @@ import math
 
 import numpy as np
 
+from spaceplane.aero.exact.blunt_sphere import sphere_flow
 from spaceplane.aero.exact.stagnation import normal_shock_pressure, stagnation_cp
 from spaceplane.flow.solution import FlowConditions, Solution
 from spaceplane.mesh.settings import MeshSettings
 from spaceplane.mesh.sizing import Sizing
 from spaceplane.validation import bodies
-from spaceplane.validation.blunt import standoff_billig, standoff_seiff
+from spaceplane.validation.blunt import standoff_billig
 from spaceplane.validation.cases import Progress
 from spaceplane.validation.flowcase import part_of_wall, solve_body
 from spaceplane.validation.records import Record
 
 MACHS = (5.0, 10.0, 25.0)
-CELLS = (1.0 / 24.0, 1.0 / 44.0, 1.0 / 64.0)
-"""Cells at the nose, radii: three, six and eight between shock and wall."""
+CELLS = (1.0 / 48.0, 1.0 / 68.0, 1.0 / 88.0)
+"""Cells at the nose, radii: about six, nine and twelve between shock and wall."""
 NOSE, SONIC = math.radians(20.0), math.radians(60.0)
 """Angles from the nose within which the shock layer has such cells, and cells twice as large: to beyond the sonic line,
 behind which nothing acts on the nose. The rest of the sphere has cells four times as large."""
 DOMAIN = ((-1.0, -2.5, -2.5), (3.0, 2.5, 2.5))
 RAYLEIGH = "Rayleigh's pitot formula (NACA 1135)"
-SEIFF = "Seiff (1962): 0.78 of the density ratio"
+FITTED = "Perfect gas with fitted shock, solved here"
 BILLIG = "Billig (1967)"
-COARSE = 1.0 / 40.0
-COARSE_NOTE = "With three cells in the shock layer this is shown, not judged; Billig's row is."
-CP_NOTE = (
-    "What is off depends on where in a cell the shock stands, not on the size of the cells; likely the entropy that a "
-    "captured shock along the grid leaves on the axis."
-)
-BILLIG_NOTE = (
-    "Billig's formula is a fit to experiments; from Mach 5 to 25 it lies 4 to 10 % over 0.78 of the density "
-    "ratio of a perfect gas."
-)
 
 
 def run(case: str, fine: bool, progress: Progress) -> list[Record]:
@@ -43,12 +34,12 @@ def run(case: str, fine: bool, progress: Progress) -> list[Record]:
 
     Args:
         case: name of the validation case they belong to.
-        fine: the finest of the three meshes as well.
+        fine: all three meshes, else the coarsest.
         progress: told what runs.
     """
     records: list[Record] = []
     zero = np.zeros(len(MACHS))
-    for cell in CELLS if fine else CELLS[:-1]:
+    for cell in CELLS if fine else CELLS[:1]:
         progress(f"nose with cells of 1/{1 / cell:g} radius", 0.5)
         settings = MeshSettings(wall_cell=4.0 * cell, growth_layers=1, domain=DOMAIN)
         conditions = FlowConditions(np.array(MACHS), zero, zero)
@@ -74,29 +65,63 @@ def shock_layer(cell: float) -> Sizing:
     return Sizing(np.concatenate(points), np.concatenate(sizes))
 
 
+def standoff_rows(
+    case: str, where: str, mach: float, computed: float | None, bands: tuple[float, float]
+) -> list[Record]:
+    """Records of a shock stand-off over the radius: beside the exact flow of a perfect gas, and beside Billig's fit.
+
+    Billig's row is judged where the exact flow itself lies in its band.
+
+    Args:
+        case, where: of the records.
+        mach: free-stream Mach number.
+        computed: stand-off over the radius; None where the flow did not converge.
+        bands: relative bands of the two rows.
+    """
+    exact, billig = sphere_flow(mach).standoff, standoff_billig(mach)
+    off = exact / billig - 1.0
+    judged = abs(off) <= bands[1]
+    note = f"Mach {mach:g}: the exact flow of a perfect gas lies {100.0 * off:+.1f} % from Billig's fit to experiments"
+    note += "." if judged else ", outside the band: his row is shown, not judged."
+    name = "shock stand-off / radius"
+    return [
+        Record(case, name, where, "-", exact, computed, bands[0], "relative", FITTED),
+        Record(
+            case,
+            f"{name}, beside Billig's fit",
+            where,
+            "-",
+            billig,
+            computed,
+            bands[1],
+            "relative",
+            BILLIG,
+            gate=judged,
+            note=note,
+        ),
+    ]
+
+
 def _rows(case: str, solution: Solution, index: int, mach: float, cell: float) -> list[Record]:
     where = f"Mach {mach:g}, cells of 1/{1 / cell:g} radius"
     good = solution.records[index].good
-    found = {"stagnation Cp": nose_cp(solution, index), "shock stand-off / radius": standoff(solution, index)}
-
-    def row(quantity: str, published: float, band: float, source: str, gate: bool = True, note: str = "") -> Record:
-        computed = found[quantity] if good else None
-        return Record(case, quantity, where, "-", published, computed, band, "relative", source, gate=gate, note=note)
-
-    thin = cell > COARSE
+    cp = nose_cp(solution, index) if good else None
     return [
-        row("stagnation Cp", stagnation_cp(mach), 0.02, RAYLEIGH, note=CP_NOTE),
-        row("shock stand-off / radius", standoff_seiff(mach), 0.05, SEIFF, not thin, COARSE_NOTE if thin else ""),
-        row("shock stand-off / radius", standoff_billig(mach), 0.05, BILLIG, note=BILLIG_NOTE),
+        Record(case, "stagnation Cp", where, "-", stagnation_cp(mach), cp, 0.02, "relative", RAYLEIGH),
+        *standoff_rows(case, where, mach, standoff(solution, index) if good else None, (0.05, 0.05)),
     ]
 
 
 def nose_cp(solution: Solution, condition: int) -> float:
-    """Cp at the stagnation point: a parabola in the distance from the axis through the wall faces nearest to it."""
+    """Cp at the stagnation point: a parabola in the distance from the axis through the wall within `NOSE` of it.
+
+    Single faces scatter by where in a cell the shock ahead of them stands; on the exact flow the parabola ends 0.05 %
+    off.
+    """
     mesh = solution.mesh
-    radius = np.hypot(mesh.wall_center[:, 1], mesh.wall_center[:, 2]) + 1e6 * ~part_of_wall(mesh, "forebody")
-    near = np.argsort(radius)[:24]
-    powers = np.stack([np.ones(len(near)), radius[near] ** 2], axis=1)
+    radius = np.hypot(mesh.wall_center[:, 1], mesh.wall_center[:, 2])
+    near = part_of_wall(mesh, "forebody") & (radius < math.sin(NOSE))
+    powers = np.stack([np.ones(int(near.sum())), radius[near] ** 2], axis=1)
     return float(np.linalg.lstsq(powers, solution.wall_cp()[near, condition].astype(float), rcond=None)[0][0])
 
 
