@@ -9,7 +9,7 @@ from markupsafe import Markup
 from spaceplane import __version__
 from spaceplane.report.flight_point import level_css, point
 from spaceplane.report.names import COEFFICIENTS, SOURCES, meaning, split_derivative, stability, symbol, words
-from spaceplane.report.numbers import Measured, duration, fixed, grouped, is_number, measured, number
+from spaceplane.report.numbers import Measured, duration, fixed, grouped, is_number, measured, number, unbroken
 from spaceplane.report.plots import POINT_COLOURS, eigenvalues_together, range_bar
 
 __all__ = ["level_css", "point", "whole", "words"]
@@ -50,7 +50,7 @@ def whole(result: dict) -> dict:
         "vehicle": vehicle,
         "lead": _lead(result),
         "chips": _chips(result),
-        "warnings": warnings(result),
+        "warnings": [unbroken(line) for line in warnings(result)],
         "flight_rows": _flight_rows(points),
         "coefficient_rows": _coefficient_rows(points),
         "increments": increments_text(result),
