@@ -352,6 +352,18 @@ def test_what_an_accuracy_does_not_go_with(capfd, tmp_path, command, options, na
     refused(capfd, *start, *options, naming=naming)
 
 
+@pytest.mark.parametrize(
+    ("options", "naming"),
+    [
+        (("--adapt", "1"), "--adapt: 1, goes with --cells"),
+        (("--adapt", "4", "--cells", "40k"), "--adapt: 4"),
+        (("--adapt", "1", "--cells", "40k", "--accuracy", "5%"), "adapt = 1: not allowed with accuracy"),
+    ],
+)
+def test_what_an_adapted_analysis_does_not_go_with(capfd, tmp_path, options, naming):
+    refused(capfd, "analyse", "horus-2b", "--out", tmp_path / "o", *options, naming=naming)
+
+
 def test_rates_and_altitudes_that_no_flight_has(capfd, tmp_path):
     body = tetrahedron(tmp_path / "t.stl")
     refused(capfd, "flow", body, "--mach", 2, *FLOW, "--rates", "0,5000,0", naming="rates")

@@ -16,8 +16,10 @@ from spaceplane.vehicle.surface import Surface
 # A part is called thin when more than this share of the grid lines through it leave it within two cells; below that it
 # is the rim near a sharp edge, which every wing has.
 THIN_SHARE = 0.25
-# Measured at wall cells of 0.25 m, and of 0.3 m with two levels at edges, against 0.11 m: see docs/method.md.
+# Measured at wall cells of 0.25 m, on as many cells adapted to the flow and at 0.3 m with two levels at edges, against
+# 0.11 m: see docs/method.md.
 THIN_COST = "3 % (Mach 2.5) to 10 % (Mach 0.8) of its lift slope and 16 to 31 % of its C_m slope"
+THIN_COST_ADAPTED = "1 % of its lift slope and 10 to 12 % of its C_m slope"
 THIN_COST_WITH_EDGES = "1 % of its lift slope and 2 % (Mach 2.5) to 7 % (Mach 0.8) of its C_m slope"
 
 
@@ -33,6 +35,7 @@ def describe(
     enclosed: float,
     thin: list[dict],
     seconds: dict,
+    adapted: bool = False,
 ) -> dict:
     """The mesh's record.
 
@@ -43,11 +46,13 @@ def describe(
         enclosed: volume of air, m3, that the far field cannot reach and that was left out.
         thin: parts with thin walls, see `thin_walls`.
         seconds: by phase.
+        adapted: whether a sizing of the user's made cells smaller.
     """
     begin = time.perf_counter()
     sides = 2 if grid.half else 1
     by_part = _part_errors(mesh, surface, wetted)
-    warnings = [thin_warning(thin, settings.edge_levels)] if thin else []
+    cost = THIN_COST_WITH_EDGES if settings.edge_levels >= 2 else THIN_COST_ADAPTED if adapted else THIN_COST
+    warnings = [thin_warning(thin, cost)] if thin else []
     if enclosed > 0.0:
         warnings.append(f"{enclosed:.4g} m3 of air enclosed by the body cannot be reached from outside and is left out")
     if cut.folded_edges:
@@ -147,12 +152,12 @@ def thin_walls(cut: CutCells, shift: np.ndarray, surface: Surface, grid: Grid, s
     return found
 
 
-def thin_warning(thin: list[dict], edge_levels: int) -> str:
+def thin_warning(thin: list[dict], cost: str) -> str:
     """One sentence on thin walls: which parts, where one is, what they cost and what helps.
 
     Args:
         thin: as of `thin_walls`, at least one part; twins on the left and right are told as one, by the thinner.
-        edge_levels: of the settings; with two or more, thin walls cost less.
+        cost: what HORUS-2B loses on such a mesh.
     """
     told: dict[str, dict] = {}
     for one in sorted(thin, key=lambda one: one["thickness_m"]):
@@ -164,7 +169,6 @@ def thin_warning(thin: list[dict], edge_levels: int) -> str:
     sizes = {one["cell_m"] for one in thin}
     cells = " to ".join(f"{size:.3g}" for size in sorted({min(sizes), max(sizes)}))
     x, y, z = next(iter(told.values()))["at_m"]
-    cost = THIN_COST_WITH_EDGES if edge_levels >= 2 else THIN_COST
     return (
         f"walls thinner than two cells of {cells} m: {', '.join(named)}, the thinnest at "
         f"x={x:.3f} y={y:.3f} z={z:.3f} m; so meshed HORUS-2B loses {cost}, less with smaller cells (--cell, --cells)"

@@ -225,6 +225,9 @@ def _generate(surface: Surface, settings: MeshSettings, half: bool, sizing: Sizi
     enclosed = float(whole.volume[~kept].sum()) * grid.cell**3
     merged = int((root != np.arange(len(root))).sum()) - joined
     sizes = wall_sizes(np.floor(cut.thin[:, :3]).astype(np.int64) + shift, blocks)
+    adapted = sizing is not None and not settings.edge_levels
     thin = thin_walls(cut, shift, surface, grid, sizes)
-    mesh.record.update(describe(mesh, surface, settings, grid, cut, wetted, body, merged, enclosed, thin, seconds))
+    mesh.record.update(
+        describe(mesh, surface, settings, grid, cut, wetted, body, merged, enclosed, thin, seconds, adapted)
+    )
     return mesh

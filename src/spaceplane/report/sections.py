@@ -299,6 +299,10 @@ def _mesh_rows(result: dict) -> list[tuple[str, str]]:
     rows = [(label, grouped(mesh[key])) for label, key in MESH_ROWS if is_number(mesh.get(key))]
     if is_number(mesh.get("wall_cell_m")):
         rows.insert(1, ("Cell at the wall", f"{number(mesh['wall_cell_m'], 3)} m"))
+    steps = mesh.get("adaptation")
+    if steps:
+        passes = f"{steps['passes']} {'pass' if steps['passes'] == 1 else 'passes'}"
+        rows.insert(1, ("Adapted to the flow", f"{passes}: {' → '.join(grouped(n) for n in steps['cells'])}"))
     for label, key in (("Error of the wetted area", "area_error"), ("Error of the volume", "volume_error")):
         if is_number(mesh.get(key)):
             rows.append((label, number(mesh[key], 2)))
