@@ -742,6 +742,13 @@ def test_adapted_flow_from_the_command_line(capfd, tmp_path):
     code, out, err = run(capfd, "flow", body, "--mach", 2, *FLOW, *options)
     assert code == 0, err
     assert json.loads(out)[0]["cells"] == pytest.approx(6000, rel=0.15)
+    code, out, err = run(capfd, "flow", body, "--mach", 2, *FLOW, *options, "--uncertainty", "mesh")
+    assert code == 0, err
+    again = json.loads(out)[0]
+    assert again["cells"] == pytest.approx(6000, rel=0.15)
+    assert 0.0 < again["coefficient_errors_by_source"]["mesh"]["CD"] < 0.5 * again["CD"]
+    options = ("--cells", "40k", "--adapt", 1, "--accuracy", "5%")
+    refused(capfd, "flow", body, "--mach", 2, *FLOW, *options, naming="--accuracy: 5%, not allowed")
 
 
 def test_interrupt_from_outside_is_one_line_and_130(tmp_path):

@@ -123,17 +123,10 @@ def adapt_mesh(
         raise InputError(f"adapt: {passes}, needs target_cells, the number of cells of the last mesh")
     say, budget = progress or silent, mesh_settings.target_cells
     growth = min(GROWTH**passes, LARGEST_GROWTH, max(budget / LEAST_CELLS, 2.0))
-    loose = replace(
-        mesh_settings,
-        wall_layers=1,
-        growth_layers=1,
-        fine_edges=False,
-        edge_levels=0,
-        target_cells=max(1000, round(budget / growth)),
-    )
+    loose = replace(follower(mesh_settings), target_cells=max(1000, round(budget / growth)))
     say("mesh", 0, 1, "")
     mesh = generate(surface, loose, progress)
-    fixed = replace(loose, target_cells=None, wall_cell=mesh.record["wall_cell_m"])
+    fixed = follower(loose, mesh.record["wall_cell_m"])
     rough = replace(
         settings,
         residual_drop=min(settings.residual_drop, 2.0),
@@ -151,6 +144,17 @@ def adapt_mesh(
         missed = (f"target_cells: {budget} asked, {mesh.cells} reached in {passes} passes",)
         mesh.record["warnings"] += missed
     return Adapted(mesh, fixed, solution, tuple(cells), seconds, missed)
+
+
+def follower(settings: MeshSettings, wall_cell: float | None = None) -> MeshSettings:
+    """Settings of meshes that follow the flow: one layer of cells of each size and no finer edges.
+
+    Args:
+        settings: the user's.
+        wall_cell: that the first mesh was made with, m; None leaves it and the target to the settings.
+    """
+    bare = replace(settings, wall_layers=1, growth_layers=1, fine_edges=False, edge_levels=0)
+    return bare if wall_cell is None else replace(bare, target_cells=None, wall_cell=wall_cell)
 
 
 def refined_mesh(
