@@ -21,17 +21,34 @@ def coverage() -> str:
     """How many intervals hold the true value, and how wide they are against the error."""
     result = stored()
     rows = [
-        (one["case"], one["kind"], one["values"], f"{100 * one['covered']:.0f} %", f"{one['median_ratio']:.1f}")
+        (
+            f"**{one['case']}**" if one["case"] in ("held out", "all") else one["case"],
+            one["side"],
+            one["kind"],
+            one["values"],
+            f"{100 * one['covered']:.0f} %",
+            f"{one['median_ratio']:.1f}",
+        )
         for one in result["groups"]
     ]
-    cells = result["cells"]
-    head = ("case", "kind", "values", "true value inside", "median of stated over true error")
-    return (
-        f"{table(head, rows, 'llrrr')}\n\nHORUS-2B: {cells['mesh']} cells (wall cell {result['wall_cell_m']:g} m), "
-        f"companion {cells['companion']} cells, reference {cells['reference']} cells (wall cell "
-        f"{result['reference_cell_m']:g} m). The reference has an error of its own: taken on to the limit with the "
-        f"assumed order, {100 * result['covered_limit']:.0f} % of HORUS-2B's intervals hold the value."
-    )
+    head = ("case", "side", "kind", "values", "true value inside", "median of stated over true error")
+    return table(head, rows, "lllrrr")
+
+
+def meshes() -> str:
+    """The meshes of each body, and the coverage against the limit that its reference and mesh point to."""
+    rows = [
+        (
+            one["case"],
+            *(f"{one[name]}" for name in ("mesh", "companion", "reference")),
+            number(one["wall_cell_m"], 3),
+            number(one["reference_cell_m"], 3),
+            f"{100 * one['covered_limit']:.0f} %",
+        )
+        for one in stored()["meshes"]
+    ]
+    head = ("case", "cells", "companion", "reference", "wall cell, m", "reference, m", "inside, on to the limit")
+    return table(head, rows, "lrrrrrr")
 
 
 def values() -> str:
@@ -64,6 +81,7 @@ def cones() -> str:
 
 BLOCKS: dict[str, Callable[[], str]] = {
     "uncertainty coverage": coverage,
+    "uncertainty meshes": meshes,
     "uncertainty values": values,
     "uncertainty cones": cones,
 }

@@ -352,6 +352,18 @@ def test_what_an_accuracy_does_not_go_with(capfd, tmp_path, command, options, na
     refused(capfd, *start, *options, naming=naming)
 
 
+@pytest.mark.parametrize(
+    ("options", "naming"),
+    [
+        (("--adapt", "1"), "--adapt: 1, goes with --cells"),
+        (("--adapt", "4", "--cells", "40k"), "--adapt: 4"),
+        (("--adapt", "1", "--cells", "40k", "--accuracy", "5%"), "adapt = 1: not allowed with accuracy"),
+    ],
+)
+def test_what_an_adapted_analysis_does_not_go_with(capfd, tmp_path, options, naming):
+    refused(capfd, "analyse", "horus-2b", "--out", tmp_path / "o", *options, naming=naming)
+
+
 def test_rates_and_altitudes_that_no_flight_has(capfd, tmp_path):
     body = tetrahedron(tmp_path / "t.stl")
     refused(capfd, "flow", body, "--mach", 2, *FLOW, "--rates", "0,5000,0", naming="rates")
@@ -730,6 +742,13 @@ def test_adapted_flow_from_the_command_line(capfd, tmp_path):
     code, out, err = run(capfd, "flow", body, "--mach", 2, *FLOW, *options)
     assert code == 0, err
     assert json.loads(out)[0]["cells"] == pytest.approx(6000, rel=0.15)
+    code, out, err = run(capfd, "flow", body, "--mach", 2, *FLOW, *options, "--uncertainty", "mesh")
+    assert code == 0, err
+    again = json.loads(out)[0]
+    assert again["cells"] == pytest.approx(6000, rel=0.15)
+    assert 0.0 < again["coefficient_errors_by_source"]["mesh"]["CD"] < 0.5 * again["CD"]
+    options = ("--cells", "40k", "--adapt", 1, "--accuracy", "5%")
+    refused(capfd, "flow", body, "--mach", 2, *FLOW, *options, naming="--accuracy: 5%, not allowed")
 
 
 def test_interrupt_from_outside_is_one_line_and_130(tmp_path):

@@ -15,11 +15,14 @@ from spaceplane.aero.database import AeroDatabase
 from spaceplane.aero.increments.settings import VISCOUS, IncrementSettings
 from spaceplane.analysis import aerodynamics
 from spaceplane.errors import InputError
+from spaceplane.flow import adapt
 from spaceplane.flow.freestream import direction
 from spaceplane.flow.solution import ConvergenceRecord, Solution
 from spaceplane.mesh.settings import MeshSettings
 from spaceplane.pipeline import AnalyseSettings, analyse
 from spaceplane.report import record
+from spaceplane.study.keys import result_key
+from spaceplane.study.shapes import case_inputs
 from spaceplane.vehicle.controls import CONTROLS, ControlDeflections
 from spaceplane.vehicle.presets import horus_2b
 
@@ -491,3 +494,54 @@ def test_the_command_line_asks_for_the_increments_of_the_settings():
     given = inspect.signature(command).parameters
     assert (given["friction"].default, given["base"].default) == (VISCOUS.friction, VISCOUS.base)
     assert AnalyseSettings().increments == VISCOUS
+
+
+def near_the_nose(mesh, conditions, settings=None, progress=None):
+    """The impact method's flow with a bump of pressure at the nose."""
+    solution = newtonian()(mesh, conditions, settings, progress)
+    away = np.linalg.norm(mesh.cell_center - [0.0, 0.0, -0.5], axis=1)
+    solution.state[:, 4] *= 1.0 + np.exp(-((away / 2.0) ** 2))[:, None]
+    return solution
+
+
+def test_the_mesh_follows_the_flow_when_asked(monkeypatch):
+    """Base mesh, its companion and those of moved surfaces have cells of the adapted sizes; the record tells them."""
+    for place in (bodies, adapt):
+        monkeypatch.setattr(place, "solve", near_the_nose)
+    mesh = MeshSettings(target_cells=20_000, far_field=1.0)
+    found = analyse(horus_2b(), replace(SETTINGS, mach=(2.5,), mesh=mesh, adapt=1))
+    cells = found.aerodynamics.adapted.cells
+    assert len(cells) == 2 and cells[1] == found.body.solution.mesh.cells == pytest.approx(20_000, rel=0.15)
+    made = found.body.solution.mesh
+    near = np.linalg.norm(made.wall_center - [0.0, 0.0, -0.5], axis=1) < 1.5
+    size = made.cell_size[made.wall_cell]
+    assert size[near].max() < 0.6 * size[~near].max()
+    companion = found.aerodynamics.companion
+    assert companion.wall_cell == pytest.approx(2.0 * made.record["wall_cell_m"])
+    assert companion.cells < 0.5 * made.cells
+    assert all(run.cells == pytest.approx(made.cells, rel=0.1) for run in found.control_runs)
+    told = record.result(found)
+    assert told["mesh"]["adaptation"] == {"passes": 1, "cells": list(cells)}
+    assert told["settings"]["adapt"] == 1 and "flow (adaptation)" in told["solver"]["seconds_by_phase"]
+
+
+def test_a_stored_result_is_not_taken_for_one_on_another_kind_of_mesh():
+    """Passes are part of the key; a study that resumes finds the same key again."""
+    settings = {"mesh": {"target_cells": 20_000}}
+    inputs = [case_inputs("horus-2b", {}, [2.5], {**settings, "adapt": passes}) for passes in (0, 1, 2, 1)]
+    keys = [result_key(one, "code") for one in inputs]
+    assert len(set(keys)) == 3 and keys[1] == keys[3]
+    assert AnalyseSettings.from_mapping(inputs[1]["settings"]).adapt == 1
+
+
+@pytest.mark.parametrize(
+    ("change", "naming"),
+    [
+        ({"adapt": 1}, "target_cells"),
+        ({"adapt": 4, "mesh": {"target_cells": 20_000}}, "adapt: 4"),
+        ({"adapt": 1, "mesh": {"target_cells": 20_000}, "accuracy": 0.05}, "accuracy"),
+    ],
+)
+def test_adaptations_that_no_analysis_has(change, naming):
+    with pytest.raises(InputError, match=naming):
+        AnalyseSettings.from_mapping(change)

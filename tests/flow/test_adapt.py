@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -15,6 +16,7 @@ from spaceplane.flow.settings import FlowSettings
 from spaceplane.flow.solution import ConvergenceRecord, FlowConditions, Solution
 from spaceplane.mesh.generate import generate
 from spaceplane.mesh.settings import MeshSettings
+from spaceplane.mesh.sizing import sizes_of
 from spaceplane.validation import bodies
 from spaceplane.validation.flowcase import reference_of
 
@@ -132,3 +134,34 @@ def test_bad_passes_are_refused(passes, settings, word):
     wind = FlowConditions(np.array([3.0]), np.zeros(1), np.zeros(1))
     with pytest.raises(InputError, match=word):
         solve_adapted(bodies.sphere(), settings, wind, FlowSettings(), passes)
+
+
+def test_cells_are_joined_where_the_error_went(mesh):
+    """A step that moves: cells split about its old place are joined again, within the same number of cells."""
+    first = np.flatnonzero(mesh.cell_center[:, 0] > -0.5)
+    solution = made_up(mesh, [stepped(mesh, 2.0, first)], [2.0])
+    fine = refined_mesh(bodies.sphere(), SMALL, solution, 2.0 * mesh.cells)
+    moved = fine.cell_center[:, 2] > 1.3
+    target = 1.2 * fine.cells
+    again = refined_mesh(bodies.sphere(), SMALL, made_up(fine, [stepped(fine, 2.0, moved)], [2.0]), target)
+    assert again.cells == pytest.approx(target, rel=0.12)
+    smallest = fine.cell_size.min()
+
+    def small_at_first_step(which):
+        at = np.abs(which.cell_center[:, 0] + 0.5) < 0.3
+        far = at & (which.cell_center[:, 2] < 0.5)
+        return int((which.cell_size[far] <= 1.01 * smallest).sum())
+
+    assert small_at_first_step(fine) > 500
+    assert small_at_first_step(again) < 0.1 * small_at_first_step(fine)
+
+
+def test_sizes_of_a_mesh_make_it_again(mesh):
+    step = np.flatnonzero(mesh.cell_center[:, 0] > -0.5)
+    fine = refined_mesh(bodies.sphere(), SMALL, made_up(mesh, [stepped(mesh, 2.0, step)], [2.0]), 1.6 * mesh.cells)
+    again = generate(bodies.sphere(), SMALL, sizing=sizes_of(fine))
+    assert again.cells == fine.cells
+    assert np.array_equal(again.cell_volume, fine.cell_volume)
+    coarse = generate(bodies.sphere(), replace(SMALL, wall_cell=0.5), sizing=sizes_of(fine, 2.0))
+    assert coarse.cells < 0.4 * fine.cells
+    assert coarse.cell_size.min() == pytest.approx(2.0 * fine.cell_size.min())

@@ -156,9 +156,29 @@ def test_thin_plate_keeps_its_planform_and_is_warned_about():
     assert up > 0.0
     whole = np.abs(mesh.piece_area[:, 2]).sum()
     assert whole <= 24.0 + 1e-9
-    assert any("part0" in w and "thinner than two cells" in w and "x=" in w for w in mesh.record["warnings"])
+    (thin,) = mesh.record["thin_walls"]
+    assert thin["part"] == "part0" and thin["share"] > 0.8
+    assert thin["thickness_m"] == pytest.approx(PLATE, rel=1e-6) and thin["cell_m"] == pytest.approx(0.1)
+    assert np.abs(thin["at_m"])[2] < PLATE and np.abs(thin["at_m"])[0] < 1.5
+    (warning,) = mesh.record["warnings"]
+    assert "part0" in warning and "thinner than two cells" in warning and "x=" in warning
     thick = generate(bodies.from_trimesh(bodies.box(3, 4, 1)), MeshSettings(wall_cell=0.2))
-    assert not thick.record["warnings"]
+    assert not thick.record["warnings"] and not thick.record["thin_walls"]
+
+
+def test_thin_walls_of_several_parts_are_one_warning():
+    """Left and right count once; the numbers of each part stay in the record."""
+    wings = [bodies.box(1, 1, 0.1, at=(0, y, 0)) for y in (-1.2, 1.2)]
+    fin = bodies.box(1, 0.05, 0.8, at=(0, 0, 1.0))
+    names = ("fuselage", "wing_left", "wing_right", "fin")
+    surface = bodies.from_trimesh(bodies.box(2, 1, 1), *wings, fin, names=names)
+    mesh = generate(surface, MeshSettings(wall_cell=0.13, symmetric=False))
+    found = {one["part"]: one for one in mesh.record["thin_walls"]}
+    assert set(found) == {"wing_left", "wing_right", "fin"}
+    assert found["fin"]["thickness_m"] == pytest.approx(0.05, rel=1e-6)
+    assert found["wing_left"]["thickness_m"] == pytest.approx(0.1, rel=1e-6)
+    (warning,) = mesh.record["warnings"]
+    assert warning.count("wing") == 1 and warning.count("fin over") == 1 and "--cell" in warning
 
 
 def test_cavity_is_left_out_and_reported():

@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from spaceplane.report.numbers import MISSING, duration, fixed, grouped, measured, number
+from spaceplane.report.numbers import MISSING, duration, fixed, grouped, measured, number, unbroken
 
 
 @pytest.mark.parametrize(
@@ -64,3 +64,8 @@ def test_duration(seconds, text):
 
 def test_counts_are_grouped():
     assert grouped(1234567) == "1\u202f234\u202f567"
+
+
+def test_no_line_break_between_a_number_and_its_unit():
+    assert unbroken("79 % of it, 0.31 m on cells of 0.15 m") == "79\u00a0% of it, 0.31\u00a0m on cells of 0.15\u00a0m"
+    assert unbroken("2 more, 3 of 4") == "2 more, 3 of 4"

@@ -229,3 +229,16 @@ def test_without_webgl_a_picture_stands_in(html, tmp_path):
     found = in_browser(html, tmp_path, "--disable-3d-apis")
     assert found["errors"] == []
     assert "still" in found["live"]
+
+
+def test_cards_show_what_is_known_and_what_is_not(tmp_path):
+    """A derivative smaller than its error stands there with the error and without a certain sign."""
+    result = example_result()
+    first, second = result["flight_points"][:2]
+    first["derivatives"]["Cn_beta"] |= {"value": 0.0602, "error": 0.11}
+    second["derivatives"]["Cn_beta"] |= {"value": 0.0602, "error": 0.011}
+    text = words(write_report(write_example(tmp_path, flight_points=[first, second])).read_text(encoding="utf-8"))
+    cards = text[: text.index("Flight points Ambient")]
+    assert "0.06 ± 0.11 sign not certain" in cards and cards.count("sign not certain") == 1
+    assert "0.060 ± 0.011" in cards
+    assert cards.count("0.3600 ± 0.0004") == 2  # C_L and its error

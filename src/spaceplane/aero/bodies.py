@@ -18,6 +18,7 @@ from spaceplane.flow.solution import ConvergenceRecord, FlowConditions, Solution
 from spaceplane.flow.solve import solve
 from spaceplane.mesh.generate import generate
 from spaceplane.mesh.settings import MeshSettings
+from spaceplane.mesh.sizing import Sizing
 from spaceplane.progress import Progress, silent
 from spaceplane.vehicle.build import build
 from spaceplane.vehicle.controls import CONTROL_LIMITS_DEG, CONTROLS, ControlDeflections
@@ -87,6 +88,7 @@ def solve_vehicle(
     flow_settings: FlowSettings,
     progress: Progress | None = None,
     name: str = "body",
+    sizing: Sizing | None = None,
 ) -> SolvedBody:
     """Build, mesh and solve one body.
 
@@ -97,6 +99,7 @@ def solve_vehicle(
         mesh_settings, flow_settings: how to mesh and solve.
         progress: called with (phase, done, total, text).
         name: stands before each phase told to `progress`, with a colon after it.
+        sizing: cells wanted smaller than the settings make them.
 
     Raises:
         InputError: a shape that cannot be built, or a mesh or condition that is not allowed.
@@ -110,7 +113,7 @@ def solve_vehicle(
     surface = build(vehicle.shape, deflections)
     built = time.perf_counter()
     say("mesh", 0, 1, "")
-    mesh = generate(surface, mesh_settings, say)
+    mesh = generate(surface, mesh_settings, say, sizing)
     meshed = time.perf_counter()
     solution = solve(mesh, conditions, flow_settings, say)
     seconds = {"geometry": built - began, "mesh": meshed - built, "flow": time.perf_counter() - meshed}
@@ -128,6 +131,7 @@ def control_runs(
     progress: Progress | None = None,
     increments: IncrementSettings | None = None,
     air: Air | None = None,
+    sizing: Sizing | None = None,
 ) -> tuple[ControlRun, ...]:
     """Solve the conditions on bodies with one surface moved by `step`, rad, or by minus that where limits ask for it.
 
@@ -143,6 +147,7 @@ def control_runs(
         two_step_sizes: two runs for each surface.
         increments: viscous increments; none when None.
         air: of each condition, for skin friction.
+        sizing: cells wanted smaller than the settings make them, about every body.
 
     Raises:
         InputError: as `solve_vehicle`.
@@ -158,7 +163,7 @@ def control_runs(
         for size in (full, 0.5 * full) if two_step_sizes else (full,):
             moved = replace(deflections, **{surface: start + size})
             label = _label(surface, size)
-            body = solve_vehicle(vehicle, moved, conditions, mesh_settings, flow_settings, progress, label)
+            body = solve_vehicle(vehicle, moved, conditions, mesh_settings, flow_settings, progress, label, sizing)
             solution = body.solution
             runs.append(
                 ControlRun(

@@ -18,7 +18,7 @@ from spaceplane.aero.uncertainty.errors import error_record, of_coefficients
 from spaceplane.aero.uncertainty.settings import ITERATION, MESH
 from spaceplane.environment.atmosphere import Ambient
 from spaceplane.errors import InputError
-from spaceplane.flow.adapt import solve_adapted
+from spaceplane.flow.adapt import follower, solve_adapted
 from spaceplane.flow.freestream import velocity
 from spaceplane.flow.settings import FlowSettings, check
 from spaceplane.flow.solution import PERFECT, FlowConditions, Solution
@@ -26,6 +26,7 @@ from spaceplane.flow.solve import solve
 from spaceplane.mesh.generate import generate
 from spaceplane.mesh.mesh import Mesh
 from spaceplane.mesh.settings import MeshSettings
+from spaceplane.mesh.sizing import sizes_of
 from spaceplane.plain import degrees, finite
 from spaceplane.progress import Progress, silent
 from spaceplane.vehicle.surface import Surface
@@ -88,7 +89,8 @@ def run_flow(
         ambient: undisturbed air of every condition, for skin friction and equilibrium air.
         uncertainty: "mesh" solves everything again on a coarser companion mesh, and the records hold
             `coefficient_errors` with the uncertainty by the mesh; "iteration" leaves that out.
-        adapt: passes that adapt the mesh to the flow, see `solve_adapted`; not together with uncertainty "mesh".
+        adapt: passes that adapt the mesh to the flow, see `solve_adapted`; the companion then has cells twice as large
+            as those of the last mesh everywhere.
         gas: name in `flow.solution.GASES`.
 
     Raises:
@@ -98,8 +100,6 @@ def run_flow(
     conditions = _turning(product(list(machs), list(alphas), list(betas)), rates, reference, body.points)
     conditions = _gas(conditions, gas, increments, ambient)
     viscous = _viscous(increments, ambient, len(conditions))
-    if adapt and uncertainty == MESH:
-        raise InputError(f"adapt: {adapt}, not allowed with uncertainty 'mesh': an adapted mesh has no companion")
     solution = solve_adapted(body, mesh_settings, conditions, flow_settings, adapt, progress)
     case = _told(solution, reference, *viscous)
     if uncertainty != MESH:
@@ -109,7 +109,9 @@ def run_flow(
         (progress or silent)(f"companion: {phase}", done, total, text)
 
     wall_cell = float(solution.mesh.record["wall_cell_m"])
-    coarse = generate(body, coarser(mesh_settings, wall_cell), say)
+    own = follower(mesh_settings, wall_cell) if adapt else mesh_settings
+    twice = sizes_of(solution.mesh, RATIO) if adapt else None
+    coarse = generate(body, coarser(own, wall_cell), say, twice)
     return _compared(case, _told(solve(coarse, conditions, flow_settings, say), reference, *viscous), RATIO)
 
 

@@ -19,10 +19,12 @@ from spaceplane.aero.uncertainty.errors import of_coefficients, of_derivatives
 from spaceplane.aero.uncertainty.settings import MESH, TIGHTEST
 from spaceplane.analysis.settings import AnalyseSettings
 from spaceplane.dynamics.flightpoint import FlightPoint
+from spaceplane.flow.adapt import Adapted, adapt_mesh
 from spaceplane.flow.solve import solve
 from spaceplane.mesh.generate import generate
 from spaceplane.mesh.mesh import Mesh
 from spaceplane.mesh.settings import MeshSettings
+from spaceplane.mesh.sizing import Sizing, sizes_of
 from spaceplane.progress import Progress
 from spaceplane.vehicle.build import build
 from spaceplane.vehicle.presets import Vehicle
@@ -43,6 +45,7 @@ class Aerodynamics:
         derivatives: dims (point, part).
         companion: the coarser run that the errors of the mesh come from; None without one.
         refined: the way to the accuracy asked for; None where none was.
+        adapted: the way to a mesh that follows the base conditions; None where the mesh is that of the settings.
     """
 
     body: SolvedBody
@@ -51,6 +54,7 @@ class Aerodynamics:
     derivatives: xr.Dataset
     companion: Companion | None = None
     refined: Refined | None = None
+    adapted: Adapted | None = None
 
 
 def solve_aerodynamics(
@@ -75,16 +79,30 @@ def solve_aerodynamics(
         mesh = at_wall_cell(settings.mesh, refined.trials[-1].wall_cell)
         found = solve_aerodynamics(vehicle, replace(settings, mesh=mesh, accuracy=None), plan, points, progress)
         return replace(found, refined=refined)
-    fine = _on_mesh(vehicle, settings, plan, points, settings.mesh, progress)
+    adapted = _adapt(vehicle, settings, plan, progress) if settings.adapt else None
+    mesh = settings.mesh if adapted is None else adapted.settings
+    fine = _on_mesh(vehicle, settings, plan, points, mesh, progress, adapted and sizes_of(adapted.mesh))
     if settings.uncertainty != MESH:
-        return _with_errors(fine, None, plan)
+        return replace(_with_errors(fine, None, plan), adapted=adapted)
     wall_cell = float(fine.body.solution.mesh.record["wall_cell_m"])
 
     def say(phase: str, done: int, total: int, text: str) -> None:
         progress(f"companion of {phase}", done, total, text)
 
-    coarse = _on_mesh(vehicle, settings, plan, points, coarser(settings.mesh, wall_cell), say)
-    return _with_errors(fine, coarse, plan)
+    twice = adapted and sizes_of(adapted.mesh, RATIO)
+    coarse = _on_mesh(vehicle, settings, plan, points, coarser(mesh, wall_cell), say, twice)
+    return replace(_with_errors(fine, coarse, plan), adapted=adapted)
+
+
+def _adapt(vehicle: Vehicle, settings: AnalyseSettings, plan: ConditionPlan, progress: Progress) -> Adapted:
+    """A mesh that follows the base conditions; their neighbours and moved control surfaces get cells of its sizes."""
+
+    def say(phase: str, done: int, total: int, text: str) -> None:
+        progress(f"adaptation: {phase}", done, total, text)
+
+    surface = build(vehicle.shape, settings.deflections)
+    conditions = plan.conditions.take(np.array([p.base for p in plan.points]))
+    return adapt_mesh(surface, settings.mesh, conditions, settings.flow, settings.adapt, say)
 
 
 def _refine(
@@ -124,8 +142,9 @@ def _on_mesh(
     points: Sequence[FlightPoint],
     mesh: MeshSettings,
     say: Progress,
+    sizing: Sizing | None = None,
 ) -> Aerodynamics:
-    body = solve_vehicle(vehicle, settings.deflections, plan.conditions, mesh, settings.flow, say, "base")
+    body = solve_vehicle(vehicle, settings.deflections, plan.conditions, mesh, settings.flow, say, "base", sizing)
     say("coefficients", 0, 1, "")
     air = Air.of([points[i].ambient for i in plan.point])
     coefficients = integrate_with(body.solution, vehicle.reference, settings.increments, air)
@@ -144,6 +163,7 @@ def _on_mesh(
         say,
         settings.increments,
         Air.of([p.ambient for p in points]),
+        sizing,
     )
     slopes = slopes_of(coefficients.isel(condition=rows), runs, is_symmetric(settings.deflections))
     return Aerodynamics(body, coefficients, runs, xr.merge([derivatives, slopes], join="exact"))

@@ -65,6 +65,8 @@ class Analysis:
         for key in ("geometry", "mesh", "flow"):
             if self.control_runs:
                 total[f"{key} (controls)"] = sum(run.seconds[key] for run in self.control_runs)
+        if self.aerodynamics.adapted is not None:
+            total["flow (adaptation)"] = self.aerodynamics.adapted.seconds
         if self.aerodynamics.companion is not None:
             total |= {f"{key} (companion)": value for key, value in self.aerodynamics.companion.seconds.items()}
         return total
@@ -86,6 +88,7 @@ def remarks(
         f"{name} = {getattr(vehicle.shape, name):g} lies outside its limits" for name in vehicle.shape.outside_limits()
     ]
     lines += [str(line) for line in body.solution.mesh.record.get("warnings", ())]
+    lines += [] if aero.adapted is None else [str(line) for line in aero.adapted.missed]
     judged = [(found[plan.point[i]].point.name, plan.labels[i], one) for i, one in enumerate(body.solution.records)]
     judged += [(at.point.name, run.label, one) for run in runs for at, one in zip(found, run.records, strict=True)]
     lines += [f"{name}, condition {label}: {one.verdict}: {one.reason}" for name, label, one in judged if not one.good]

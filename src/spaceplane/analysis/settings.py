@@ -15,7 +15,7 @@ from spaceplane.dynamics.linearise import FORMS
 from spaceplane.errors import InputError
 from spaceplane.flow.settings import FlowSettings
 from spaceplane.flow.solution import GASES, PERFECT
-from spaceplane.mesh.settings import MeshSettings, RefinementBox
+from spaceplane.mesh.settings import MeshSettings, RefinementBox, check_passes
 from spaceplane.plain import override, plain
 from spaceplane.qualities import limits
 from spaceplane.vehicle.controls import ControlDeflections
@@ -89,6 +89,8 @@ class AnalyseSettings:
         steps: steps of the stability derivatives.
         mesh: how to mesh; the default, wall cells of 0.3 m and finer ones at sharp edges, is meant to answer in about
             two minutes on two cores.
+        adapt: passes, 0 to 3, that adapt the mesh to the flow at the base conditions; the last mesh has
+            `mesh.target_cells`.
         flow: how to solve.
         gas: perfect, or equilibrium air at each point's altitude, without skin friction.
         increments: viscous increments over the inviscid coefficients: turbulent skin friction and a correlated base.
@@ -112,6 +114,7 @@ class AnalyseSettings:
     control_step: float = math.radians(10.0)
     steps: DerivativeSteps = field(default_factory=DerivativeSteps)
     mesh: MeshSettings = QUICK_MESH
+    adapt: int = 0
     flow: FlowSettings = field(default_factory=FlowSettings)
     gas: str = PERFECT
     increments: IncrementSettings = VISCOUS
@@ -131,6 +134,11 @@ class AnalyseSettings:
             values = getattr(self, name)
             if values is not None and len(values) != len(self.mach):
                 raise InputError(f"{name}: {len(values)} values for {len(self.mach)} Mach numbers; give one for each")
+        if check_passes("adapt", self.adapt):
+            if self.mesh.target_cells is None:
+                raise InputError(f"adapt = {self.adapt}: needs mesh.target_cells, the number of cells of the last mesh")
+            if self.accuracy is not None:
+                raise InputError(f"adapt = {self.adapt}: not allowed with accuracy, which refines the whole mesh")
         if self.accuracy is not None:
             if not TIGHTEST <= self.accuracy <= LOOSEST:
                 raise InputError(f"accuracy = {self.accuracy}: allowed are {TIGHTEST:g} to {LOOSEST:g}")

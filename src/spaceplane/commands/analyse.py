@@ -42,6 +42,7 @@ def analyse(
     ] = None,
     cell: options.Cell = None,
     cells: options.Cells = None,
+    adapt: options.Adapt = "0",
     uncertainty: options.Uncertainty = "mesh",
     accuracy: options.AccuracyText = None,
     precision: options.Precision = "fp32",
@@ -82,6 +83,7 @@ def analyse(
     steps = replace(settings.steps, two_step_sizes=True) if two_steps else settings.steps
     settings = replace(
         settings,
+        adapt=options.adapt_passes(adapt, settings.mesh),
         form=form,
         vehicle_class=vehicle_class,
         category=category,
@@ -113,7 +115,7 @@ def _bodies(settings: AnalyseSettings) -> int:
 
     surfaces = 3 if is_symmetric(settings.deflections) else 5
     moved = surfaces * (2 if settings.steps.two_step_sizes else 1) if settings.controls else 0
-    return (1 + moved) * (2 if settings.uncertainty == "mesh" else 1) + (settings.accuracy is not None)
+    return (1 + moved) * (2 if settings.uncertainty == "mesh" else 1) + (settings.accuracy is not None) + settings.adapt
 
 
 def _settings(

@@ -168,8 +168,7 @@ def flow(
     on_sound = tuple(rate / ambient.speed_of_sound for rate in turning)
     passes = options.adapt_passes(adapt, mesh)
     if passes:
-        beside = {"--accuracy": accuracy, "--uncertainty": uncertainty if stated == "mesh" else None}
-        _refuse_options(beside, f"not allowed with --adapt {passes}: an adapted mesh has no coarser companion")
+        _refuse_options({"--accuracy": accuracy}, f"not allowed with --adapt {passes}: it refines the whole mesh")
     extra = {"rates": on_sound, "increments": increments, "ambient": ambient, "gas": gas}
     imported: Imported | None = None
     if mesh_file is None:

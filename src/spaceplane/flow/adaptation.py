@@ -78,6 +78,22 @@ def influence(solution: Solution, condition: int, distance: np.ndarray) -> np.nd
     return behind / (1.0 + (distance / (DECAY * length)) ** 2)
 
 
+def smallest_errors(error: np.ndarray, marked: np.ndarray) -> np.ndarray:
+    """[cell] whether a cell may become part of one twice as large: its error is small beside those that are split.
+
+    With differences that grow as the size and the indicator's power of it, eight cells joined have eight times the
+    error of one. That stays below half of the smallest error that is split, so that no cell is joined now to be split
+    next (equidistribution).
+
+    Args:
+        error: [cell] of `error_indicator`.
+        marked: [cell] the cells to split; without any, none is joined.
+    """
+    if not marked.any():
+        return np.zeros(len(error), bool)
+    return error < error[marked].min() / (2.0 * 2.0 ** (1.0 + SIZE_POWER))
+
+
 def largest_errors(error: np.ndarray, count: int) -> np.ndarray:
     """[cell] whether a cell is among the `count` with the largest error; cells without error never are."""
     marked = np.zeros(len(error), bool)

@@ -36,11 +36,14 @@ class Judged(Protocol):
     """What is asked of a lane's history; see `march.History`."""
 
     @property
-    def age(self) -> int: ...
+    def age(self) -> int:
+        """Iterations done."""
 
-    def gain(self, window: int) -> float: ...
+    def gain(self, window: int) -> float:
+        """Decades gained over the last `window` iterations."""
 
-    def spread(self, window: int) -> float: ...
+    def spread(self, window: int) -> float:
+        """Half peak-to-peak of the force over them."""
 
 
 class Freezer:

@@ -16,9 +16,11 @@ from spaceplane.vehicle.surface import Surface
 # A part is called thin when more than this share of the grid lines through it leave it within two cells; below that it
 # is the rim near a sharp edge, which every wing has.
 THIN_SHARE = 0.25
-# Measured at wall cells of 0.25 m, and of 0.3 m with two levels at edges, against 0.11 m: see docs/method.md.
-THIN_COST = "HORUS-2B so meshed has 3 % (Mach 2.5) to 10 % (Mach 0.8) less lift slope"
-THIN_COST_WITH_EDGES = "HORUS-2B so meshed has 1 % less lift slope and 2 % (Mach 2.5) to 7 % (Mach 0.8) less C_m slope"
+# Measured at wall cells of 0.25 m, on as many cells adapted to the flow and at 0.3 m with two levels at edges, against
+# 0.11 m: see docs/method.md.
+THIN_COST = "3 % (Mach 2.5) to 10 % (Mach 0.8) of its lift slope and 16 to 31 % of its C_m slope"
+THIN_COST_ADAPTED = "1 % of its lift slope and 10 to 12 % of its C_m slope"
+THIN_COST_WITH_EDGES = "1 % of its lift slope and 2 % (Mach 2.5) to 7 % (Mach 0.8) of its C_m slope"
 
 
 def describe(
@@ -31,8 +33,9 @@ def describe(
     body: float,
     merged: int,
     enclosed: float,
-    warnings: list[str],
+    thin: list[dict],
     seconds: dict,
+    adapted: bool = False,
 ) -> dict:
     """The mesh's record.
 
@@ -41,13 +44,15 @@ def describe(
         body: volume of the domain that the cells leave out, m3.
         merged: control volumes merged into a neighbour.
         enclosed: volume of air, m3, that the far field cannot reach and that was left out.
-        warnings: of thin walls; the others are added.
+        thin: parts with thin walls, see `thin_walls`.
         seconds: by phase.
+        adapted: whether a sizing of the user's made cells smaller.
     """
     begin = time.perf_counter()
     sides = 2 if grid.half else 1
     by_part = _part_errors(mesh, surface, wetted)
-    warnings = list(warnings)
+    cost = THIN_COST_WITH_EDGES if settings.edge_levels >= 2 else THIN_COST_ADAPTED if adapted else THIN_COST
+    warnings = [thin_warning(thin, cost)] if thin else []
     if enclosed > 0.0:
         warnings.append(f"{enclosed:.4g} m3 of air enclosed by the body cannot be reached from outside and is left out")
     if cut.folded_edges:
@@ -81,6 +86,7 @@ def describe(
         "closure": float(closure),
         "gauss_error": cut.gauss_error,
         "smallest_volume_fraction": float((mesh.cell_volume / mesh.cell_size**3).min()),
+        "thin_walls": thin,
         "settings": dataclasses.asdict(settings),
         "warnings": warnings,
     }
@@ -112,18 +118,18 @@ def _part_errors(mesh: Mesh, surface: Surface, wetted: np.ndarray) -> dict:
     return errors
 
 
-def thin_warnings(
-    cut: CutCells, shift: np.ndarray, surface: Surface, grid: Grid, sizes: np.ndarray, edge_levels: int = 0
-) -> list[str]:
-    """Name the parts that are mostly thinner than two of their cells, with a typical place.
+def thin_walls(cut: CutCells, shift: np.ndarray, surface: Surface, grid: Grid, sizes: np.ndarray) -> list[dict]:
+    """Parts that are mostly thinner than two of their cells; of a body meshed as half, those of that half.
 
     Args:
         shift: [xyz] cell of the domain that the window of `cut` begins with.
         sizes: [place of `cut.thin`] edge of the cube of wall there, in finest cells.
-        edge_levels: of the settings; with two or more, thin walls cost less.
+
+    Returns:
+        For each such part "part", the "share" of it that is thin, and of a typical place "thickness_m", "cell_m" (of
+        the wall there) and "at_m" (x, y, z).
     """
-    warnings = []
-    cost = THIN_COST_WITH_EDGES if edge_levels >= 2 else THIN_COST
+    found = []
     parts = len(surface.part_names)
     examined = np.bincount(surface.part[cut.lines.astype(np.int64)], minlength=parts)
     part = surface.part[cut.thin[:, 4].astype(np.int64)]
@@ -133,11 +139,37 @@ def thin_warnings(
         if len(here) == 0 or len(here) < THIN_SHARE * examined[k]:
             continue
         middle = np.argsort(here[:, 3])[len(here) // 2]
-        typical = here[middle]
-        x, y, z = grid.corner + (typical[:3] + shift) * grid.cell
-        warnings.append(
-            f"{surface.part_names[k]}: wall thinner than two cells over {len(here) / examined[k]:.0%} of it, "
-            f"for example {typical[3] * grid.cell:.3g} m at x={x:.3f} y={y:.3f} z={z:.3f} m "
-            f"(wall cell {cells[middle]:.3g} m); {cost}"
+        place = grid.corner + (here[middle, :3] + shift) * grid.cell
+        found.append(
+            {
+                "part": surface.part_names[k],
+                "share": float(len(here) / examined[k]),
+                "thickness_m": float(here[middle, 3] * grid.cell),
+                "cell_m": float(cells[middle]),
+                "at_m": [float(x) for x in place],
+            }
         )
-    return warnings
+    return found
+
+
+def thin_warning(thin: list[dict], cost: str) -> str:
+    """One sentence on thin walls: which parts, where one is, what they cost and what helps.
+
+    Args:
+        thin: as of `thin_walls`, at least one part; twins on the left and right are told as one, by the thinner.
+        cost: what HORUS-2B loses on such a mesh.
+    """
+    told: dict[str, dict] = {}
+    for one in sorted(thin, key=lambda one: one["thickness_m"]):
+        told.setdefault(one["part"].removesuffix("_left").removesuffix("_right"), one)
+    named = [
+        f"{name.replace('_', ' ')} over {100 * one['share']:.0f} % ({one['thickness_m']:.2g} m)"
+        for name, one in sorted(told.items(), key=lambda item: -item[1]["share"])
+    ]
+    sizes = {one["cell_m"] for one in thin}
+    cells = " to ".join(f"{size:.3g}" for size in sorted({min(sizes), max(sizes)}))
+    x, y, z = next(iter(told.values()))["at_m"]
+    return (
+        f"walls thinner than two cells of {cells} m: {', '.join(named)}, the thinnest at "
+        f"x={x:.3f} y={y:.3f} z={z:.3f} m; so meshed HORUS-2B loses {cost}, less with smaller cells (--cell, --cells)"
+    )

@@ -10,7 +10,7 @@ import numpy as np
 
 from spaceplane.errors import InputError
 from spaceplane.mesh import assembly, octree
-from spaceplane.mesh.checks import describe, thin_warnings
+from spaceplane.mesh.checks import describe, thin_walls
 from spaceplane.mesh.coarsen import coarsen
 from spaceplane.mesh.compiled import CACHE
 from spaceplane.mesh.cutcells import CutCells, cut_cells
@@ -225,6 +225,9 @@ def _generate(surface: Surface, settings: MeshSettings, half: bool, sizing: Sizi
     enclosed = float(whole.volume[~kept].sum()) * grid.cell**3
     merged = int((root != np.arange(len(root))).sum()) - joined
     sizes = wall_sizes(np.floor(cut.thin[:, :3]).astype(np.int64) + shift, blocks)
-    thin = thin_warnings(cut, shift, surface, grid, sizes, settings.edge_levels)
-    mesh.record.update(describe(mesh, surface, settings, grid, cut, wetted, body, merged, enclosed, thin, seconds))
+    adapted = sizing is not None and not settings.edge_levels
+    thin = thin_walls(cut, shift, surface, grid, sizes)
+    mesh.record.update(
+        describe(mesh, surface, settings, grid, cut, wetted, body, merged, enclosed, thin, seconds, adapted)
+    )
     return mesh

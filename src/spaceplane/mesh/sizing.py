@@ -43,16 +43,19 @@ class Sizing:
             raise InputError("sizing: points and cells must be finite, cells above 0")
 
 
-def split(mesh: Mesh, marked: np.ndarray) -> Sizing:
-    """Cells as small as those of `mesh`, and half as small where marked.
+def split(mesh: Mesh, marked: np.ndarray, coarse: np.ndarray | None = None) -> Sizing:
+    """Cells as small as those of `mesh`, half as small where marked and twice as large where they may be coarse.
 
     Args:
         mesh: of `generate`; built again with the same settings and this sizing, only marked cells are split, and what
-            grading needs besides.
+            grading needs besides. Eight cells become one where all of them may be coarse and the settings allow it.
         marked: [cell] bool.
+        coarse: [cell] bool, none of them marked; None for no coarser cells.
     """
     owner, center, size = octree_cubes(mesh)
     wanted = np.where(marked[owner], np.minimum(size, 0.5 * mesh.cell_size[owner]), size)
+    if coarse is not None:
+        wanted = np.where(coarse[owner], 2.0 * size, wanted)
     halved = wanted < 0.75 * size
     corners = np.stack(np.meshgrid(*[[-0.25, 0.25]] * 3, indexing="ij"), axis=-1).reshape(1, 8, 3)
     children = (center[halved][:, None] + corners * size[halved, None, None]).reshape(-1, 3)
@@ -60,6 +63,12 @@ def split(mesh: Mesh, marked: np.ndarray) -> Sizing:
         np.concatenate([center[~halved], children]),
         np.concatenate([wanted[~halved], np.repeat(wanted[halved], 8)]),
     )
+
+
+def sizes_of(mesh: Mesh, ratio: float = 1.0) -> Sizing:
+    """Cells as small as those of `mesh`, or `ratio` times as large."""
+    found = split(mesh, np.zeros(mesh.cells, bool))
+    return Sizing(found.point, ratio * found.cell)
 
 
 def round_edges(mesh: Mesh) -> np.ndarray:

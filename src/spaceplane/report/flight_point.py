@@ -5,13 +5,14 @@ from __future__ import annotations
 from markupsafe import Markup
 
 from spaceplane.aero.axes import FORCES_AND_MOMENTS
-from spaceplane.report.names import GREEK, STATES, greek, split_derivative, symbol, words
-from spaceplane.report.numbers import MINUS, MISSING, duration, fixed, grouped, is_number, measured, number
+from spaceplane.report.names import GREEK, STATES, greek, split_derivative, stability, symbol, words
+from spaceplane.report.numbers import MINUS, MISSING, Measured, duration, fixed, grouped, is_number, measured, number
 from spaceplane.report.plots import convergence_plot, derivative_bars, eigenvalue_planes, eigenvalue_text, phase_clock
 from spaceplane.report.read import level_text
 
 LEVEL_CSS = {1: "good", 2: "fair", 3: "poor", "below 3": "bad"}
 VERDICT_CSS = {"converged": "good", "oscillating": "fair", "failed": "bad"}
+FIGURES = ("CL", "CD", "L_over_D", "Cm_alpha", "Cn_beta", "Cl_beta")
 BARS = ("CL_alpha", "CD_alpha", "Cm_alpha", "CY_beta", "Cl_beta", "Cn_beta")
 
 
@@ -22,18 +23,13 @@ def level_css(level: int | str | None) -> str:
 
 def point(p: dict) -> dict:
     """Everything the templates show about flight point `p` of result.json."""
-    coefficients = p.get("coefficients") or {}
     modes = p.get("modes") or []
     verdicts = p.get("verdicts") or []
     return {
         "name": p["name"],
         "summary": f"{fixed(_in(p, 'altitude_m', 1e-3), 1)} km, α {fixed(p.get('alpha_deg'), 1)}°, "
         f"{fixed(p.get('velocity_ms'), 0)} m/s",
-        "figures": [(Markup(symbol(name)), number(coefficients.get(name), 3)) for name in ("CL", "CD", "L_over_D")]
-        + [
-            (Markup(symbol(name)), number(((p.get("derivatives") or {}).get(name) or {}).get("value"), 3))
-            for name in ("Cm_alpha", "Cn_beta", "Cl_beta")
-        ],
+        "figures": _figures(p),
         "level_chips": _level_chips(verdicts),
         **_validity(p),
         "alpha_source": p.get("alpha_source") or "",
@@ -47,6 +43,21 @@ def point(p: dict) -> dict:
         "verdict_groups": _verdict_groups(verdicts),
         "convergence": [_convergence(r) for r in p.get("convergence") or []],
     }
+
+
+def _figures(p: dict) -> list[dict]:
+    """Coefficients and derivatives that stand on the card of a flight point, each with its error."""
+    found = []
+    for name in FIGURES:
+        of_point = {key: (p.get(key) or {}).get(name) for key in ("coefficients", "coefficient_errors", "derivatives")}
+        derivative = of_point["derivatives"] or {}
+        value = derivative.get("value") if derivative else of_point["coefficients"]
+        error = derivative.get("error") if derivative else of_point["coefficient_errors"]
+        shown = measured(value, error) if is_number(error) and error > 0 else Measured(number(value, 3))
+        uncertain = is_number(value) and is_number(error) and abs(value) <= error
+        sign = stability(name, value, error) or ("undecided" if uncertain else "")
+        found.append({"symbol": Markup(symbol(name)), "m": shown, "sign": sign})
+    return found
 
 
 def _in(record: dict, key: str, factor: float) -> float | None:

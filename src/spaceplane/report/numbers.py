@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import dataclass
 
 MISSING = "–"
 MINUS = "\u2212"
 LONG = 365.0 * 86400.0  # s
+_BEFORE_UNIT = re.compile(r"(?<=\d) (?=(?:%|m|deg|s|K|Pa|kPa|decades|cells|iterations)(?![\w/]))")
 _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
@@ -101,6 +103,11 @@ def duration(seconds: float | None) -> str:
     if abs(whole) < 172800:
         return f"{whole // 3600} h {whole % 3600 // 60:02d} min"
     return f"{whole // 86400} days"
+
+
+def unbroken(text: str) -> str:
+    """`text` with no line break between a number and its unit."""
+    return _BEFORE_UNIT.sub("\u00a0", text)
 
 
 def _signed(text: str) -> str:

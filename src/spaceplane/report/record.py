@@ -269,7 +269,9 @@ def mesh(analysis: Analysis) -> dict:
     """What the generator has to say of the base mesh, and its size against the surface."""
     made = analysis.body.solution.mesh
     kept = {key: value for key, value in made.record.items() if key not in ("settings", "errors_by_part")}
-    return {**kept, "cells": made.cells, "seconds": analysis.body.seconds["mesh"]}
+    adapted = analysis.aerodynamics.adapted
+    steps = None if adapted is None else {"passes": len(adapted.cells) - 1, "cells": list(adapted.cells)}
+    return {**kept, "cells": made.cells, "adaptation": steps, "seconds": analysis.body.seconds["mesh"]}
 
 
 def solver(analysis: Analysis) -> dict:

@@ -9,7 +9,7 @@ from markupsafe import Markup
 from spaceplane import __version__
 from spaceplane.report.flight_point import level_css, point
 from spaceplane.report.names import COEFFICIENTS, SOURCES, meaning, split_derivative, stability, symbol, words
-from spaceplane.report.numbers import Measured, duration, fixed, grouped, is_number, measured, number
+from spaceplane.report.numbers import Measured, duration, fixed, grouped, is_number, measured, number, unbroken
 from spaceplane.report.plots import POINT_COLOURS, eigenvalues_together, range_bar
 
 __all__ = ["level_css", "point", "whole", "words"]
@@ -50,7 +50,7 @@ def whole(result: dict) -> dict:
         "vehicle": vehicle,
         "lead": _lead(result),
         "chips": _chips(result),
-        "warnings": warnings(result),
+        "warnings": [unbroken(line) for line in warnings(result)],
         "flight_rows": _flight_rows(points),
         "coefficient_rows": _coefficient_rows(points),
         "increments": increments_text(result),
@@ -299,6 +299,10 @@ def _mesh_rows(result: dict) -> list[tuple[str, str]]:
     rows = [(label, grouped(mesh[key])) for label, key in MESH_ROWS if is_number(mesh.get(key))]
     if is_number(mesh.get("wall_cell_m")):
         rows.insert(1, ("Cell at the wall", f"{number(mesh['wall_cell_m'], 3)} m"))
+    steps = mesh.get("adaptation")
+    if steps:
+        passes = f"{steps['passes']} {'pass' if steps['passes'] == 1 else 'passes'}"
+        rows.insert(1, ("Adapted to the flow", f"{passes}: {' → '.join(grouped(n) for n in steps['cells'])}"))
     for label, key in (("Error of the wetted area", "area_error"), ("Error of the volume", "volume_error")):
         if is_number(mesh.get(key)):
             rows.append((label, number(mesh[key], 2)))

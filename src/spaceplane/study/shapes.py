@@ -81,7 +81,8 @@ def with_one_wall_cell(
     """Return settings with the wall cell, m, that a target number of cells gives the default shape.
 
     Shapes are then compared on meshes of one fineness: a number of cells would give each shape a cell of its own, and
-    part of the difference between two would be the mesh's. Settings without a target come back as they are.
+    part of the difference between two would be the mesh's. Settings without a target, or with a mesh that follows the
+    flow about each shape, come back as they are.
 
     Args:
         vehicle, changes, settings, allow_outside_limits: as `case_inputs`.
@@ -92,7 +93,7 @@ def with_one_wall_cell(
     from spaceplane.vehicle.build import build
 
     resolved = AnalyseSettings.from_mapping(settings)
-    if resolved.mesh.target_cells is None:
+    if resolved.mesh.target_cells is None or resolved.adapt:
         return dict(settings)
     shape = presets.load(vehicle, dict(changes), allow_outside=allow_outside_limits).shape
     mesh = generate(build(shape, resolved.deflections), resolved.mesh)

@@ -27,23 +27,23 @@ def mesh(cell):
 def cases():
     return {
         cell: run_flow(cone(HALF_ANGLE), *CONDITIONS, REFERENCE, mesh(cell), FlowSettings(), uncertainty="mesh")
-        for cell in (0.05, 0.1)
+        for cell in (0.04, 0.08)
     }
 
 
 def test_it_holds_the_exact_normal_force_and_moment(cases):
     """First-order theory of small incidence (Stone); yaw is pitch turned by a right angle."""
     exact = {"CN": SLOPE * ALPHA, "Cm": -SLOPE * ALPHA * center_of_pressure(HALF_ANGLE)}
-    for record in cases[0.05].records:
+    for record in cases[0.04].records:
         for name, value in exact.items():
             error = record["coefficient_errors"][name]
             assert abs(record[name] - value) < error < 0.5 * abs(value), (name, record[name], error)
-    yawed = cases[0.05].records[1]
+    yawed = cases[0.04].records[1]
     assert abs(yawed["Cn"] + yawed["Cm"]) < yawed["coefficient_errors"]["Cn"]
 
 
 def test_smaller_cells_are_more_certain(cases):
-    fine, coarse = cases[0.05], cases[0.1]
+    fine, coarse = cases[0.04], cases[0.08]
     assert fine.companion.cells == pytest.approx(coarse.mesh.cells, rel=0.4)
     for a, b in zip(fine.records, coarse.records, strict=True):
         first, second = (math.hypot(r["coefficient_errors"]["CA"], r["coefficient_errors"]["CN"]) for r in (a, b))
@@ -55,13 +55,13 @@ def test_smaller_cells_are_more_certain(cases):
 
 def test_refining_to_an_accuracy_reaches_it_or_says_that_it_did_not():
     args = cone(HALF_ANGLE), *CONDITIONS, REFERENCE, mesh(1.0), FlowSettings()
-    case, found = run_to_accuracy(*args, Accuracy(0.2, 100_000))
-    assert found.met and found.reached <= 0.2
+    case, found = run_to_accuracy(*args, Accuracy(0.27, 100_000))
+    assert found.met and found.reached <= 0.27
     for record in case.records:
         assert record["cells"] == found.trials[-1].cells == case.mesh.cells
         force = math.hypot(record["CL"], record["CD"], record["CY"])
         worst = max(record["coefficient_errors"][name] for name in ("CL", "CD", "Cm")) / force
-        assert record["accuracy"] == {"target": 0.2, "reached": pytest.approx(worst), "met": True}
+        assert record["accuracy"] == {"target": 0.27, "reached": pytest.approx(worst), "met": True}
     case, found = run_to_accuracy(*args, Accuracy(0.001, 40_000))
     assert not found.met and found.trials[-1].cells <= 40_000 and found.needed > 40_000
     assert not any(record["accuracy"]["met"] for record in case.records if record["accuracy"]["reached"] > 0.001)

@@ -26,7 +26,7 @@ def test_errors_of_half_to_second_order_are_covered_too():
     for power in (0.5, 1.0, 2.0):
         fine, coarse = (values(exact, slope, h, power) for h in (0.25, 0.5))
         found = half_width(fine, coarse, MACH, ["force"], 2.0)
-        assert (np.abs(fine - exact) < found).all() and (found < 15.0 * np.abs(fine - exact)).all()
+        assert (np.abs(fine - exact) < found).all() and (found < 5.0 * SAFETY * np.abs(fine - exact)).all()
 
 
 def test_forces_are_off_by_no_less_than_the_moments_they_make():
