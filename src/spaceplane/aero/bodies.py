@@ -13,6 +13,7 @@ from spaceplane.aero.derivatives import Move, by_symmetry, control_derivatives
 from spaceplane.aero.increments.add import integrate_with
 from spaceplane.aero.increments.settings import Air, IncrementSettings
 from spaceplane.aero.integrate import wetted_area
+from spaceplane.flow.compilation import begin
 from spaceplane.flow.settings import FlowSettings
 from spaceplane.flow.solution import ConvergenceRecord, FlowConditions, Solution
 from spaceplane.flow.solve import solve
@@ -106,6 +107,7 @@ def solve_vehicle(
         (progress or silent)(f"{name}: {phase}", done, total, text)
 
     began = time.perf_counter()
+    begin(flow_settings, conditions)
     say("geometry", 0, 1, "")
     surface = build(vehicle.shape, deflections)
     built = time.perf_counter()

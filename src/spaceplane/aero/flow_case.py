@@ -19,6 +19,7 @@ from spaceplane.aero.uncertainty.settings import ITERATION, MESH
 from spaceplane.environment.atmosphere import Ambient
 from spaceplane.errors import InputError
 from spaceplane.flow.adapt import solve_adapted
+from spaceplane.flow.compilation import begin
 from spaceplane.flow.freestream import velocity
 from spaceplane.flow.settings import FlowSettings, check
 from spaceplane.flow.solution import PERFECT, FlowConditions, Solution
@@ -150,6 +151,7 @@ def run_to_accuracy(
     viscous = _viscous(increments, ambient, len(conditions))
     last: FlowCase | None = None
     number = 1
+    begin(flow_settings, conditions)
 
     def say(phase: str, done: int, total: int, text: str) -> None:
         (progress or silent)(f"mesh {number}: {phase}", done, total, text)

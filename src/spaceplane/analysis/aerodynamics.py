@@ -19,6 +19,7 @@ from spaceplane.aero.uncertainty.errors import of_coefficients, of_derivatives
 from spaceplane.aero.uncertainty.settings import MESH, TIGHTEST
 from spaceplane.analysis.settings import AnalyseSettings
 from spaceplane.dynamics.flightpoint import FlightPoint
+from spaceplane.flow.compilation import begin
 from spaceplane.flow.solve import solve
 from spaceplane.mesh.generate import generate
 from spaceplane.mesh.mesh import Mesh
@@ -99,6 +100,7 @@ def _refine(
     surface = build(vehicle.shape, settings.deflections)
     conditions = plan.conditions.take(np.array([p.base for p in plan.points]))
     air = Air.of([p.ambient for p in points])
+    begin(settings.flow, conditions)
 
     def say(phase: str, done: int, total: int, text: str) -> None:
         progress(f"accuracy: {phase}", done, total, text)

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from spaceplane.errors import InputError
 from spaceplane.flow.adaptation import error_indicator, largest_errors
+from spaceplane.flow.compilation import begin
 from spaceplane.flow.settings import FlowSettings
 from spaceplane.flow.solution import FlowConditions, Solution
 from spaceplane.flow.solve import solve
@@ -55,6 +56,7 @@ def solve_adapted(
     if check_passes("adapt", passes) and mesh_settings.target_cells is None:
         raise InputError(f"adapt: {passes}, needs target_cells, the number of cells of the last mesh")
     settings, say = flow_settings or FlowSettings(), progress or silent
+    begin(settings, conditions)
     if not passes:
         say("mesh", 0, 1, "")
         return solve(generate(surface, mesh_settings, progress), conditions, settings, progress)
