@@ -6,6 +6,7 @@ From docs/data/benchmark.json (benchmarks/run.py --json) and docs/data/stopping.
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Callable
 
 from blocks import DATA, table
@@ -73,6 +74,39 @@ def compilation() -> str:
     return f"{size}: the first start ever takes {f['first_s']:.0f} s, a later one {f['later_s']:.1f} s."
 
 
+def scaling() -> str:
+    """Growth of time and memory with cells and with conditions."""
+    size, f = figures("scaling")
+    sizes = [name.removesuffix(" cells") for name in f if name.endswith(" cells")]
+    rows = [
+        (
+            f"{f[f'{s} cells']:.0f}",
+            f"{f[f'{s} mesh_cpu_s']:.1f}",
+            f"{f[f'{s} iteration_cpu_s']:.2f}",
+            f"{f[f'{s} cpu_ns']:.0f}",
+            f"{f[f'{s} bytes']:.0f}",
+            f"{f[f'{s} peak_memory_gb']:.2f}",
+        )
+        for s in sizes
+    ]
+    head = ("cells", "mesh, s", "one iteration, s", "ns per cell and condition", "bytes per cell and condition", "GB")
+    small, large = sizes[0], sizes[-1]
+    power = math.log(f[f"{large} iteration_cpu_s"] / f[f"{small} iteration_cpu_s"])
+    power /= math.log(f[f"{large} cells"] / f[f"{small} cells"])
+    counts = [name.partition(" ")[0] for name in f if name.endswith("conditions solver_cpu_s")]
+    one = f[f"{counts[0]} conditions solver_cpu_s"]
+    more = [
+        (n, f"{f[f'{n} conditions solver_cpu_s']:.1f}", f"{f[f'{n} conditions solver_cpu_s'] / one:.1f}")
+        for n in counts
+    ]
+    return (
+        f"{size}; sixteen conditions; seconds of processor time over all cores. The time of an iteration grows as "
+        f"cells^{power:.2f}.\n\n{table(head, rows)}\n\n"
+        f"From the free stream to convergence by conditions, on a mesh of about 20 000 cells:\n\n"
+        f"{table(('conditions', 's', 'on one condition'), more)}"
+    )
+
+
 def stopping() -> str:
     """The stopping rule against long runs."""
     stored = json.loads((DATA / "stopping.json").read_text(encoding="utf-8"))
@@ -96,5 +130,6 @@ BLOCKS: dict[str, Callable[[], str]] = {
     "bench stages": stages,
     "bench roofline": roofline,
     "bench compilation": compilation,
+    "bench scaling": scaling,
     "stopping rule": stopping,
 }

@@ -100,3 +100,15 @@ def test_a_changed_source_asks_for_another_compilation(tmp_path):
     (sources / "one.py").write_text("a = 2\n")
     assert not cache.is_complete("all")
     assert kernelcache.cache_of(sources).folder != first.folder
+
+
+def test_functions_inside_kernels_can_be_called_from_python():
+    @kernelcache.inner
+    def double(x):
+        return 2 * x
+
+    @kernelcache.inner
+    def twice(x):
+        return double(double(x))
+
+    assert twice(3) == 12 and double(0.5) == 1.0 and twice.py_func(1) == 4

@@ -6,8 +6,7 @@ import math
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-
-import xarray as xr
+from typing import TYPE_CHECKING
 
 from spaceplane.aero.derivatives import Move, by_symmetry, control_derivatives
 from spaceplane.aero.increments.add import integrate_with
@@ -24,6 +23,9 @@ from spaceplane.vehicle.build import build
 from spaceplane.vehicle.controls import CONTROL_LIMITS_DEG, CONTROLS, ControlDeflections
 from spaceplane.vehicle.presets import Vehicle
 from spaceplane.vehicle.surface import Surface
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 
 @dataclass(frozen=True)

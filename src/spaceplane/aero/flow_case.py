@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 
 from spaceplane.aero.conditions import in_air, product
 from spaceplane.aero.increments.add import WITH_SOURCES, integrate_with
@@ -30,6 +30,9 @@ from spaceplane.mesh.settings import MeshSettings
 from spaceplane.plain import degrees, finite
 from spaceplane.progress import Progress, silent
 from spaceplane.vehicle.surface import Surface
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 FASTEST_POINT = 0.5
 """Speed by rotation, on the flight speed, that a point of the body may have: far beyond any vehicle's manoeuvre."""

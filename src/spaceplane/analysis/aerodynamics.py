@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 
 from spaceplane.aero.bodies import ControlRun, SolvedBody, control_runs, is_symmetric, slopes_of, solve_vehicle
 from spaceplane.aero.conditions import ConditionPlan
@@ -27,6 +27,9 @@ from spaceplane.mesh.settings import MeshSettings
 from spaceplane.progress import Progress
 from spaceplane.vehicle.build import build
 from spaceplane.vehicle.presets import Vehicle
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 STRICTER = 0.95
 """Share of what is asked that the mesh is chosen by: the choice knows the base conditions alone, the result their
@@ -148,6 +151,8 @@ def _on_mesh(
         Air.of([p.ambient for p in points]),
     )
     slopes = slopes_of(coefficients.isel(condition=rows), runs, is_symmetric(settings.deflections))
+    import xarray as xr
+
     return Aerodynamics(body, coefficients, runs, xr.merge([derivatives, slopes], join="exact"))
 
 

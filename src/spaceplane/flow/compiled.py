@@ -11,11 +11,10 @@ from pathlib import Path
 os.environ.setdefault("OMP_WAIT_POLICY", "passive")
 os.environ.setdefault("GOMP_SPINCOUNT", "0")
 
-from numba import njit
 from numba.core.cpu import CPUTargetOptions
 from numba.core.options import TargetOptions
 
-from spaceplane.kernelcache import cache_of
+from spaceplane.kernelcache import cache_of, inner
 
 CACHE = cache_of(Path(__file__).parent)
 
@@ -29,9 +28,6 @@ RHO, VX, VY, VZ, PRS = range(0, ROW, LANES)
 FAST_MATH = {"reassoc", "contract", "arcp", "afn", "nsz"}
 OPTIONS = {"fastmath": FAST_MATH, "error_model": "numpy"}
 
-# Functions inside kernels are called by kernels only. Entries from Python and C cost a fifth of the time of compiling.
-NO_ENTRY = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
-
 # numba can tell the compiler that no two arguments overlap, but has no name for it among its options. Without it, every
 # short loop over lanes is preceded by a test of all its arrays against each other, or stays scalar.
 CPUTargetOptions.noalias = TargetOptions.Mapping("noalias")
@@ -39,16 +35,14 @@ CPUTargetOptions.noalias = TargetOptions.Mapping("noalias")
 
 def kernel(function: Callable) -> Callable:
     """Compile a kernel that runs on all threads, kept on disk."""
-    return CACHE.compile(function, parallel=True, nogil=True, no_cfunc_wrapper=True, **OPTIONS)
+    return CACHE.compile(function, parallel=True, nogil=True, **OPTIONS)
 
 
 def distinct(function: Callable) -> Callable:
-    """Compile the work of one thread, whose array arguments must not overlap each other; called from kernels only,
-    not from Python."""
-    return njit(noalias=True, nogil=True, **NO_ENTRY, **OPTIONS)(function)
+    """Compile the work of one thread, whose array arguments must not overlap each other; called from a kernel."""
+    return inner(function, noalias=True, nogil=True, **OPTIONS)
 
 
 def inlined(function: Callable) -> Callable:
-    """Compile a scalar function into its callers; not called from Python. The plain Python function stays at
-    `.py_func`."""
-    return njit(forceinline=True, **NO_ENTRY, **OPTIONS)(function)
+    """Compile a scalar function into its callers. The plain Python function stays at `.py_func`."""
+    return inner(function, forceinline=True, **OPTIONS)

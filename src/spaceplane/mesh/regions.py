@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from spaceplane.mesh.compiled import inner, kernel
+from spaceplane.kernelcache import inner
+from spaceplane.mesh.compiled import kernel
 from spaceplane.mesh.unionfind import find, unite
 
 # Overlap along a grid line, in cells, that is not round-off.

@@ -7,7 +7,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from spaceplane.mesh.compiled import inner, kernel
+from spaceplane.kernelcache import inner
+from spaceplane.mesh.compiled import kernel
 
 
 @inner

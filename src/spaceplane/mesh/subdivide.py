@@ -15,7 +15,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from spaceplane.errors import InputError
-from spaceplane.mesh.compiled import inner, kernel
+from spaceplane.kernelcache import inner
+from spaceplane.mesh.compiled import kernel
 from spaceplane.mesh.splitting import first_parts, split_edges, split_polygons
 
 

@@ -12,4 +12,4 @@ CACHE = cache_of(Path(__file__).parent)
 
 def kernel(function: Callable) -> Callable:
     """Compile a kernel of this package; use as `@kernel`. The plain Python function stays at `.py_func`."""
-    return CACHE.compile(function, nogil=True, no_cfunc_wrapper=True)
+    return CACHE.compile(function, nogil=True)
