@@ -71,7 +71,10 @@ def roofline() -> str:
 def compilation() -> str:
     """Seconds of the first and of a later start."""
     size, f = figures("compile")
-    return f"{size}: the first start ever takes {f['first_s']:.0f} s, a later one {f['later_s']:.1f} s."
+    return (
+        f"{size}: {f['first_cpu_s']:.0f} s of processor time in both processes for the first start ever, "
+        f"{f['later_cpu_s']:.1f} s for a later one; {f['first_s']:.0f} and {f['later_s']:.1f} s by the clock."
+    )
 
 
 def scaling() -> str:

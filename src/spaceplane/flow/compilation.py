@@ -222,7 +222,7 @@ def compile_kernels(settings: FlowSettings, conditions: FlowConditions, progress
     key = settings.precision, conditions.gas
     if CACHE.is_complete("-".join(key)):
         return
-    (progress or silent)("compile", 0, 1, "compiling kernels (once, ~15 s)")
+    (progress or silent)("compile", 0, 1, "compiling kernels (once, ~20 s)")
     begin(settings, conditions)
     work = _begun.pop(key, None) or Work(*key, helped=False)
     work.finish()
