@@ -5,6 +5,7 @@
     python benchmarks/run.py --cells 30000        stages on a small mesh, something quick
     python benchmarks/run.py --largest 2400000    scaling up to meshes that need 20 GB
     python benchmarks/run.py --store              keep the results as this machine's baseline
+    python benchmarks/run.py --json FILE          where the figures go; those of other parts that it holds stay
 
 stages: geometry, mesh, solver of 16 conditions on 300 000 cells; roofline: bytes, operations and the share of the
 machine that each kernel reaches; scaling: time and memory by cells and conditions; compile: the first start ever and a
@@ -18,6 +19,7 @@ from __future__ import annotations
 import argparse
 import json
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 
 import compile_time
@@ -45,9 +47,15 @@ def measure(part: str, options: argparse.Namespace) -> tuple[str, dict[str, floa
     return "ramp", su2.measure()
 
 
+def kept(path: Path, parts: Sequence[str]) -> dict[str, dict[str, float]]:
+    """Figures in the file `path`, which this run writes again, of the parts other than these."""
+    old = json.loads(path.read_text(encoding="utf-8"))["figures"] if path.exists() else {}
+    return {name: figures for name, figures in old.items() if name.partition(":")[0] not in parts}
+
+
 def is_cost(figure: str) -> bool:
     """Whether a figure is one of which a ratio to the baseline says something."""
-    return figure.endswith(("_s", " s", "ns", "_iteration", "_gb", "of_bandwidth"))
+    return figure.endswith(("_s", " s", "ns", "_iteration", "_gb", " bytes", "of_bandwidth"))
 
 
 def table(name: str, figures: dict[str, float], old: dict[str, float]) -> str:
@@ -67,11 +75,12 @@ def main() -> int:
     parser.add_argument("--conditions", type=int, default=16, help="free streams of the stages' ensemble")
     parser.add_argument("--largest", type=int, default=1_200_000, help="most cells of the scaling")
     parser.add_argument("--json", type=Path, default=Path("out/benchmark.json"), help="where the figures go")
+    parser.add_argument("--plot", type=Path, help="draw the scaling there")
     parser.add_argument("--store", action="store_true", help="make these the baseline of this machine")
     options = parser.parse_args()
 
     stored = json.loads(BASELINE.read_text(encoding="utf-8")) if BASELINE.exists() else {}
-    results, known = {}, False
+    results, known = kept(options.json, options.only), False
     for part in options.only:
         size, figures = measure(part, options)
         if not figures:
@@ -81,6 +90,8 @@ def main() -> int:
         results[name] = figures
         known |= name in stored
         print(table(name, figures, stored.get(name, {})), end="\n\n", flush=True)
+        if part == "scaling" and options.plot:
+            scaling.plot(figures, options.plot)
         options.json.parent.mkdir(parents=True, exist_ok=True)
         options.json.write_text(json.dumps({"figures": results, "baseline": stored}, indent=1) + "\n")
     if not known:

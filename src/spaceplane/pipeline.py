@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 
 from spaceplane import __version__
 from spaceplane.aero.bodies import ControlRun, is_symmetric
@@ -22,6 +22,9 @@ from spaceplane.progress import Progress, silent
 from spaceplane.report.output import write
 from spaceplane.vehicle.controls import CONTROLS, ControlDeflections
 from spaceplane.vehicle.presets import Vehicle
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 
 def analyse(vehicle: Vehicle, settings: AnalyseSettings | None = None, progress: Progress | None = None) -> Analysis:

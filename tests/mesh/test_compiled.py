@@ -3,10 +3,13 @@
 import subprocess
 import sys
 
+import numpy as np
 import pytest
 
 from spaceplane import kernelcache
 from spaceplane.aero import bodies as vehicle_bodies
+from spaceplane.flow.settings import FlowSettings
+from spaceplane.flow.solution import FlowConditions
 from spaceplane.mesh import generate as meshing
 from spaceplane.mesh.settings import MeshSettings
 
@@ -73,8 +76,15 @@ def test_a_vehicle_names_the_body_whose_mesh_compiles(fresh, monkeypatch):
     monkeypatch.setattr(vehicle_bodies, "solve", lambda *_: None)
     heard = []
     settings = MeshSettings(wall_cell=0.7, far_field=1.0)
+    stream = FlowConditions(np.array([2.0]), np.zeros(1), np.zeros(1))
     vehicle_bodies.solve_vehicle(
-        horus_2b(), ControlDeflections(), None, settings, None, lambda *told: heard.append(told[0]), "base"
+        horus_2b(),
+        ControlDeflections(),
+        stream,
+        settings,
+        FlowSettings(),
+        lambda *told: heard.append(told[0]),
+        "base",
     )
     assert heard == ["base: geometry", "base: mesh", "base: compile mesh"]
 
@@ -90,3 +100,15 @@ def test_a_changed_source_asks_for_another_compilation(tmp_path):
     (sources / "one.py").write_text("a = 2\n")
     assert not cache.is_complete("all")
     assert kernelcache.cache_of(sources).folder != first.folder
+
+
+def test_functions_inside_kernels_can_be_called_from_python():
+    @kernelcache.inner
+    def double(x):
+        return 2 * x
+
+    @kernelcache.inner
+    def twice(x):
+        return double(double(x))
+
+    assert twice(3) == 12 and double(0.5) == 1.0 and twice.py_func(1) == 4

@@ -6,13 +6,13 @@ import math
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-
-import xarray as xr
+from typing import TYPE_CHECKING
 
 from spaceplane.aero.derivatives import Move, by_symmetry, control_derivatives
 from spaceplane.aero.increments.add import integrate_with
 from spaceplane.aero.increments.settings import Air, IncrementSettings
 from spaceplane.aero.integrate import wetted_area
+from spaceplane.flow.compilation import begin
 from spaceplane.flow.settings import FlowSettings
 from spaceplane.flow.solution import ConvergenceRecord, FlowConditions, Solution
 from spaceplane.flow.solve import solve
@@ -24,6 +24,9 @@ from spaceplane.vehicle.build import build
 from spaceplane.vehicle.controls import CONTROL_LIMITS_DEG, CONTROLS, ControlDeflections
 from spaceplane.vehicle.presets import Vehicle
 from spaceplane.vehicle.surface import Surface
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 
 @dataclass(frozen=True)
@@ -109,6 +112,7 @@ def solve_vehicle(
         (progress or silent)(f"{name}: {phase}", done, total, text)
 
     began = time.perf_counter()
+    begin(flow_settings, conditions)
     say("geometry", 0, 1, "")
     surface = build(vehicle.shape, deflections)
     built = time.perf_counter()

@@ -5,12 +5,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 
 from spaceplane.errors import InputError
 from spaceplane.vehicle.controls import CONTROLS
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 SCHEMA = "spaceplane.aero"
 SCHEMA_VERSION = 1
@@ -64,6 +67,8 @@ class AeroDatabase:
             InputError: not there, not NetCDF, or of another schema.
         """
         try:
+            import xarray as xr
+
             with xr.open_dataset(path, engine="netcdf4") as file:
                 data = file.load()
         except (OSError, ValueError) as error:
@@ -96,6 +101,8 @@ def assemble(
             value = np.full(count, float(block.deflections.get(name, 0.0)))
             coordinates[name] = ("case", value, {"units": "rad", "long_name": f"deflection of {name}"})
         pieces.append(block.coefficients.rename(condition="case").assign_coords(coordinates))
+    import xarray as xr
+
     joined = xr.concat(pieces, dim="case", combine_attrs="override", join="exact")
     data = xr.merge([joined, derivatives.assign_coords(point=list(points))], join="exact", combine_attrs="override")
     data.attrs |= {"schema": SCHEMA, "schema_version": SCHEMA_VERSION, "spaceplane_version": version}

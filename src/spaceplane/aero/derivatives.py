@@ -18,13 +18,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 
 from spaceplane.aero.axes import FORCES_AND_MOMENTS
 from spaceplane.aero.conditions import ConditionPlan, PointPlan, Variation
 from spaceplane.aero.integrate import mirrored, mirrored_name
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 # Thesis Table 7.1, and damping; angles per rad, Mach per unit Mach, rates on p b/2V, q c/2V, r b/2V.
 STABILITY = {
@@ -195,4 +198,6 @@ def _dataset(slopes: Mapping[str, list[Slope]], source: xr.Dataset, quantity: Ma
         )
         variables[f"{name}_step"] = ("point", [v.step for v in values], {"units": step_units})
         variables[f"{name}_status"] = ("point", np.array([v.status for v in values], dtype=str))
+    import xarray as xr
+
     return xr.Dataset(variables, {"part": source.part.values})

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 
 from spaceplane.aero.conditions import in_air, product
 from spaceplane.aero.increments.add import WITH_SOURCES, integrate_with
@@ -19,6 +19,7 @@ from spaceplane.aero.uncertainty.settings import ITERATION, MESH
 from spaceplane.environment.atmosphere import Ambient
 from spaceplane.errors import InputError
 from spaceplane.flow.adapt import follower, solve_adapted
+from spaceplane.flow.compilation import begin
 from spaceplane.flow.freestream import velocity
 from spaceplane.flow.settings import FlowSettings, check
 from spaceplane.flow.solution import PERFECT, FlowConditions, Solution
@@ -30,6 +31,9 @@ from spaceplane.mesh.sizing import sizes_of
 from spaceplane.plain import degrees, finite
 from spaceplane.progress import Progress, silent
 from spaceplane.vehicle.surface import Surface
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 FASTEST_POINT = 0.5
 """Speed by rotation, on the flight speed, that a point of the body may have: far beyond any vehicle's manoeuvre."""
@@ -152,6 +156,7 @@ def run_to_accuracy(
     viscous = _viscous(increments, ambient, len(conditions))
     last: FlowCase | None = None
     number = 1
+    begin(flow_settings, conditions)
 
     def say(phase: str, done: int, total: int, text: str) -> None:
         (progress or silent)(f"mesh {number}: {phase}", done, total, text)

@@ -5,14 +5,17 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 
 from spaceplane.aero.axes import FORCES_AND_MOMENTS, wind_axes
 from spaceplane.aero.loads import Reference, coefficients_of
 from spaceplane.flow.solution import ConvergenceRecord, FlowConditions, Solution
 from spaceplane.mesh.mesh import Mesh
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 TOTAL = "total"
 COEFFICIENTS = (*FORCES_AND_MOMENTS, "CA", "CN", "CA_forebody", "CA_base")
@@ -242,6 +245,8 @@ def _dataset(
         "gamma": float(conditions.gamma),
         "gas": conditions.gas,
     }
+    import xarray as xr  # slow to import, and needed at the end only
+
     return xr.Dataset(variables, coordinates, attributes)
 
 

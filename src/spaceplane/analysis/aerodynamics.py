@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 
 from spaceplane.aero.bodies import ControlRun, SolvedBody, control_runs, is_symmetric, slopes_of, solve_vehicle
 from spaceplane.aero.conditions import ConditionPlan
@@ -20,6 +20,7 @@ from spaceplane.aero.uncertainty.settings import MESH, TIGHTEST
 from spaceplane.analysis.settings import AnalyseSettings
 from spaceplane.dynamics.flightpoint import FlightPoint
 from spaceplane.flow.adapt import Adapted, adapt_mesh
+from spaceplane.flow.compilation import begin
 from spaceplane.flow.solve import solve
 from spaceplane.mesh.generate import generate
 from spaceplane.mesh.mesh import Mesh
@@ -28,6 +29,9 @@ from spaceplane.mesh.sizing import Sizing, sizes_of
 from spaceplane.progress import Progress
 from spaceplane.vehicle.build import build
 from spaceplane.vehicle.presets import Vehicle
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 STRICTER = 0.95
 """Share of what is asked that the mesh is chosen by: the choice knows the base conditions alone, the result their
@@ -102,6 +106,7 @@ def _adapt(vehicle: Vehicle, settings: AnalyseSettings, plan: ConditionPlan, pro
 
     surface = build(vehicle.shape, settings.deflections)
     conditions = plan.conditions.take(np.array([p.base for p in plan.points]))
+    begin(settings.flow, conditions)
     return adapt_mesh(surface, settings.mesh, conditions, settings.flow, settings.adapt, say)
 
 
@@ -117,6 +122,7 @@ def _refine(
     surface = build(vehicle.shape, settings.deflections)
     conditions = plan.conditions.take(np.array([p.base for p in plan.points]))
     air = Air.of([p.ambient for p in points])
+    begin(settings.flow, conditions)
 
     def say(phase: str, done: int, total: int, text: str) -> None:
         progress(f"accuracy: {phase}", done, total, text)
@@ -166,6 +172,8 @@ def _on_mesh(
         sizing,
     )
     slopes = slopes_of(coefficients.isel(condition=rows), runs, is_symmetric(settings.deflections))
+    import xarray as xr
+
     return Aerodynamics(body, coefficients, runs, xr.merge([derivatives, slopes], join="exact"))
 
 

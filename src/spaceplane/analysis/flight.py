@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-
-import xarray as xr
+from typing import TYPE_CHECKING
 
 from spaceplane.aero.integrate import TOTAL
 from spaceplane.analysis.settings import AnalyseSettings
@@ -18,6 +17,9 @@ from spaceplane.environment.constants import STANDARD_GRAVITY
 from spaceplane.environment.validity import Validity, assess_validity
 from spaceplane.qualities.assess import Verdict, assess, load_factor_slope
 from spaceplane.vehicle.presets import Vehicle
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 
 @dataclass(frozen=True)

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-
-import xarray as xr
+from typing import TYPE_CHECKING
 
 from spaceplane.aero.bodies import ControlRun, SolvedBody
 from spaceplane.aero.conditions import ConditionPlan
@@ -15,6 +14,9 @@ from spaceplane.analysis.flight import PointAnalysis
 from spaceplane.analysis.settings import AnalyseSettings
 from spaceplane.dynamics.derivatives import DAMPING, STATIC
 from spaceplane.vehicle.presets import Vehicle
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 
 @dataclass(frozen=True)

@@ -66,7 +66,7 @@ def _read(first: Path, second: Path) -> dict:
 
 def _computed(folder: Path, cells: str | None, workers: int) -> dict:
     settings = {} if cells is None else {"mesh": {"target_cells": count("--cells", cells, "cells")}}
-    from spaceplane.mesh.generate import compile_kernels
+    from spaceplane.flow.compilation import compile_all
     from spaceplane.study.compare import default_against_optimised
 
     with progress_bar() as tell:
@@ -74,5 +74,5 @@ def _computed(folder: Path, cells: str | None, workers: int) -> dict:
         def on_change(p) -> None:
             tell(f"{p.done} of {p.total} shapes: {', '.join(p.running)}", p.fraction)
 
-        compile_once = partial(compile_kernels, tell)  # here, not in every worker
+        compile_once = partial(compile_all, tell)  # here, not in every worker
         return default_against_optimised(folder / "store.sqlite", on_change, workers, settings, before=compile_once)

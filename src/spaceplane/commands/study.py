@@ -55,7 +55,7 @@ def sensitivity(
     store_path = store or out / "store.sqlite"
     if not resume and store_path.exists():
         raise InputError(f"--no-resume: {store_path} exists; remove it or name another --store")
-    from spaceplane.mesh.generate import compile_kernels
+    from spaceplane.flow.compilation import compile_all
     from spaceplane.study import sensitivity as study
     from spaceplane.study.cases import load_study
 
@@ -66,7 +66,7 @@ def sensitivity(
             left = "" if p.remaining_s is None else f", about {p.remaining_s / 60:.0f} min left"
             tell(f"{p.done} of {p.total} shapes ({p.reused} from the store){left}", p.fraction)
 
-        compile_once = partial(compile_kernels, tell)  # here, not in every worker
+        compile_once = partial(compile_all, tell)  # here, not in every worker
         found = study.run(asked, store_path, out, on_change, workers, plots=plots, before=compile_once)
     if json_file is not None:
         import json

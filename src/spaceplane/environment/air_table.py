@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from spaceplane.environment.equilibrium_air import GAS_CONSTANT, HIGHEST_TEMPERATURE, heat_at_density
 
@@ -57,6 +56,8 @@ def air_table() -> AirTable:
 
     Against `heat_at_density` itself, B is within 2e-4 from 50 to 12000 K, 1e-8 to 50 kg/m3.
     """
+    from scipy.interpolate import CubicSpline  # slow to import
+
     density = np.linspace(np.log(LOWEST_DENSITY), np.log(HIGHEST_DENSITY), _DENSITIES)
     temperature = np.geomspace(LOWEST_TEMPERATURE, HIGHEST_TEMPERATURE, _TEMPERATURES)
     factor, enthalpy = heat_at_density(*np.broadcast_arrays(temperature, np.exp(density)[:, None]))

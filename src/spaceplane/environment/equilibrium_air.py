@@ -12,7 +12,6 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import brentq
 
 from spaceplane.environment import constants as c
 
@@ -78,6 +77,8 @@ class AirState:
 
 def equilibrium(temperature: float, pressure: float) -> AirState:
     """Composition, density and enthalpy at a temperature, K, and pressure, Pa."""
+    from scipy.optimize import brentq  # slow to import, as all of scipy; the perfect gas needs none of it
+
     T, p = temperature, pressure
     # Square roots of the equilibrium constants: p_O = a x, p_N = b y, p_NO = k x y with x2 = p_O2, y2 = p_N2.
     log = {species: float(_log_function(species, T)) for species in (N2, O2, NO, N, O)}
@@ -148,6 +149,8 @@ def behind_normal_shock(pressure: float, temperature: float, speed: float) -> Ai
         temperature: ahead of the shock, K.
         speed: of the air towards the shock, m/s; supersonic.
     """
+    from scipy.optimize import brentq
+
     ahead = equilibrium(temperature, pressure)
 
     def state(ratio: float) -> AirState:
@@ -169,6 +172,8 @@ def stagnation(pressure: float, temperature: float, speed: float) -> AirState:
         temperature: ahead of the shock, K.
         speed: of the air towards the shock, m/s; supersonic.
     """
+    from scipy.optimize import brentq
+
     behind = behind_normal_shock(pressure, temperature, speed)
     total = equilibrium(temperature, pressure).enthalpy + speed**2 / 2
 

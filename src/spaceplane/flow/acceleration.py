@@ -14,7 +14,7 @@ from numba import prange
 from spaceplane.flow.bounds import bounded
 from spaceplane.flow.compiled import LANES, PRS, RHO, ROW, VX, VY, VZ, distinct, inlined, kernel
 from spaceplane.flow.gas import factor_near
-from spaceplane.flow.topology import Topology
+from spaceplane.flow.topology import Chunks, Topology
 
 SLOWEST = 0.02
 """Least share of the CFL number that a cell marches with."""
@@ -87,8 +87,10 @@ def record_difference(
     for chunk in prange(chunk_cells.shape[0] - 1):
         f = np.empty(ROW, change.dtype)
         d = np.empty(ROW, change.dtype)
-        products[chunk] = 0.0
-        gram[chunk] = 0.0
+        for s in range(slots):
+            for n in range(LANES):
+                products[chunk, s, n] = 0.0
+                gram[chunk, s, n] = 0.0
         difference_chunk(
             chunk_cells[chunk],
             chunk_cells[chunk + 1],
@@ -210,7 +212,8 @@ def apply_step(
     for chunk in prange(chunk_cells.shape[0] - 1):
         step = np.empty(ROW, state.dtype)
         factor = np.empty(ROW, state.dtype)
-        limited[chunk] = state.dtype.type(0)
+        for n in range(LANES):
+            limited[chunk, n] = 0.0
         step_chunk(
             chunk_cells[chunk],
             chunk_cells[chunk + 1],
@@ -285,7 +288,7 @@ class Anderson:
         shape = (len(topology.chunk_cells) - 1, self.used, LANES)
         products, gram = np.empty(shape), np.empty(shape)
         record_difference(
-            topology,
+            topology.part(Chunks),
             change.reshape(-1, ROW),
             self.last_change,
             self.last_step,

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 from spaceplane.errors import InputError
 from spaceplane.flow.adaptation import error_indicator, largest_errors, smallest_errors
+from spaceplane.flow.compilation import begin
 from spaceplane.flow.settings import FlowSettings
 from spaceplane.flow.solution import FlowConditions, Solution
 from spaceplane.flow.solve import solve
@@ -73,6 +74,7 @@ def solve_adapted(
         InputError: as `generate` and `solve`, or passes that are not allowed.
     """
     settings, say = flow_settings or FlowSettings(), progress or silent
+    begin(settings, conditions)
     if not check_passes("adapt", passes):
         say("mesh", 0, 1, "")
         return solve(generate(surface, mesh_settings, progress), conditions, settings, progress)

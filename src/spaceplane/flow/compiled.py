@@ -11,11 +11,10 @@ from pathlib import Path
 os.environ.setdefault("OMP_WAIT_POLICY", "passive")
 os.environ.setdefault("GOMP_SPINCOUNT", "0")
 
-from numba import njit
 from numba.core.cpu import CPUTargetOptions
 from numba.core.options import TargetOptions
 
-from spaceplane.kernelcache import cache_of
+from spaceplane.kernelcache import cache_of, inner
 
 CACHE = cache_of(Path(__file__).parent)
 
@@ -41,9 +40,9 @@ def kernel(function: Callable) -> Callable:
 
 def distinct(function: Callable) -> Callable:
     """Compile the work of one thread, whose array arguments must not overlap each other; called from a kernel."""
-    return njit(noalias=True, nogil=True, **OPTIONS)(function)
+    return inner(function, noalias=True, nogil=True, **OPTIONS)
 
 
 def inlined(function: Callable) -> Callable:
     """Compile a scalar function into its callers. The plain Python function stays at `.py_func`."""
-    return njit(forceinline=True, **OPTIONS)(function)
+    return inner(function, forceinline=True, **OPTIONS)

@@ -18,7 +18,7 @@ from spaceplane.flow.rotation import frame_of
 from spaceplane.flow.settings import FlowSettings
 from spaceplane.flow.solution import EQUILIBRIUM, FlowConditions
 from spaceplane.flow.symmetry import symmetrise
-from spaceplane.flow.topology import Topology
+from spaceplane.flow.topology import Blocks, Chunks, Faces, Stencils, Sweeps, Topology, Walls
 from spaceplane.mesh.mesh import Mesh
 
 HIGHEST_ENTHALPY = 1.2
@@ -110,8 +110,12 @@ class Ensemble:
             self.heating.fill(self.state)
         self.reconstruct()
         self.balance()
+        return self.norms()
+
+    def norms(self) -> np.ndarray:
+        """[lane] norm of the residual, fp64."""
         sums = np.empty((len(self.topology.chunk_cells) - 1, LANES))
-        implicit.squared_norms(self.topology, self.state, self.residual, self.gamma, sums)
+        implicit.squared_norms(self.topology.part(Chunks), self.state, self.residual, self.gamma, sums)
         return np.sqrt(sums.sum(axis=0))
 
     def reconstruct(self) -> None:
@@ -120,7 +124,7 @@ class Ensemble:
             self.sensor[:] = self.low
             return
         gradients(
-            self.topology,
+            self.topology.part(Stencils),
             self.state,
             self.gradient,
             self.sensor,
@@ -140,7 +144,7 @@ class Ensemble:
         """Fill the residual from state, gradients and sensor."""
         low_mach = self.dtype(self.settings.low_mach if self.order == 2 else 1.0)
         fluxes(
-            self.topology,
+            self.topology.part(Faces),
             self.state,
             self.gradient,
             self.sensor,
@@ -172,7 +176,7 @@ class Ensemble:
     def factorise(self, cfl: np.ndarray, again: np.ndarray) -> None:
         """Fill the inverse diagonal blocks of the lanes `again` at the CFL numbers [lane]."""
         implicit.diagonals(
-            self.topology,
+            self.topology.part(Blocks),
             self.state,
             self.sensor,
             self.far,
@@ -189,7 +193,7 @@ class Ensemble:
         self.passed[:] = 0
         for forward in (True, False) * self.settings.sweeps:
             implicit.sweep(
-                self.topology,
+                self.topology.part(Sweeps),
                 self.state,
                 self.sensor,
                 self.residual,
@@ -225,7 +229,7 @@ class Ensemble:
         weights = self.anderson.weights(t, self.change, calm)
         limited = np.empty((len(t.chunk_cells) - 1, LANES), self.dtype)
         apply_step(
-            t,
+            t.part(Chunks),
             self.state,
             self.change,
             self.anderson.last_change,
@@ -251,7 +255,9 @@ class Ensemble:
     def wall_pressure(self) -> np.ndarray:
         """[wall, lane] pressure on the walls, from the state and gradients of the last `evaluate`."""
         out = np.empty((len(self.wall_area), LANES), self.dtype)
-        pressures_on_wall(self.topology, self.state, self.gradient, self.gas, self.stiffness(), self.order, out)
+        pressures_on_wall(
+            self.topology.part(Walls), self.state, self.gradient, self.gas, self.stiffness(), self.order, out
+        )
         return out
 
     def forces(self) -> np.ndarray:

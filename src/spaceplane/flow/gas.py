@@ -23,8 +23,8 @@ from spaceplane.flow.compiled import LANES, OPTIONS, PRS, RHO, inlined
 FACTOR, BY_DENSITY, BY_PRESSURE = range(0, 3 * LANES, LANES)
 """Where a row of heats has B, rho dB/drho at constant pressure and p dB/dp at constant density, each for all lanes."""
 
-OUTSIDE = -1
-"""Number of the cell that stands for the free stream."""
+OUTSIDE = np.int32(-1)
+"""Number of the cell that stands for the free stream, of the type of all others."""
 
 
 FARTHEST = 1.5

@@ -236,8 +236,10 @@ def diagonal_chunk(
     half = type(gas.gamma)(0.5)
     zero = type(gas.gamma)(0)
     for i in range(first, last):
-        block[:] = zero
-        radius[:] = zero
+        for k in range(25 * LANES):
+            block[k] = zero
+        for n in range(LANES):
+            radius[n] = zero
         for e in range(start[i], start[i + 1]):
             j = other[e]
             for n in range(LANES):
@@ -255,8 +257,11 @@ def diagonal_chunk(
             if row < walls:
                 add_wall(block, radius, rows, i, area, nx, ny, nz, gas, stiffness)
             else:
-                theta[:] = zero
-                add_face(block, radius, rows, i, free, row - walls, OUTSIDE, theta, half * area, nx, ny, nz, gas)
+                for n in range(LANES):
+                    theta[n] = zero
+                add_face(
+                    block, radius, rows, i, free, np.int32(row - walls), OUTSIDE, theta, half * area, nx, ny, nz, gas
+                )
         for n in range(LANES):
             u = rows[i, VX + n]
             v = rows[i, VY + n]
@@ -406,12 +411,13 @@ def squared_norms(topology, state, residual, gamma, out):
     Cells at the least density or pressure do not count: the bound, not the balance, holds them.
     """
     chunk_cells = topology.chunk_cells
+    volume = topology.volume
     for chunk in prange(chunk_cells.shape[0] - 1):
-        total = np.zeros(LANES, np.float64)
+        for n in range(LANES):
+            out[chunk, n] = 0.0
         for i in range(chunk_cells[chunk], chunk_cells[chunk + 1]):
-            scale = 1.0 / topology.volume[i]
+            scale = 1.0 / volume[i]
             for n in range(LANES):
                 value = np.float64(residual[i, 0, n])
                 value = 0.0 if at_bound(state[i, 0, n], state[i, 4, n], gamma) else value
-                total[n] += value * value * scale
-        out[chunk] = total
+                out[chunk, n] += value * value * scale

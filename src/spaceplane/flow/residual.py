@@ -92,7 +92,10 @@ def blend_face(left, right, ratio_l, ratio_r, theta, nx, ny, nz, area, gas, p0, 
 @distinct
 def flux_chunk(
     topology,
-    chunk,
+    first,
+    last,
+    begin,
+    end,
     rows,
     gradient,
     sensor,
@@ -111,15 +114,16 @@ def flux_chunk(
     speed,
     f,
 ):
-    """The part of `fluxes` for the cells of one chunk; scratch rows from `left` on."""
-    first = topology.chunk_cells[chunk]
-    last = topology.chunk_cells[chunk + 1]
+    """The part of `fluxes` for cells `first` to `last`, entries `begin` to `end` of `chunk_faces`; scratch rows from
+    `left` on."""
     chunk_faces = topology.chunk_faces
     face_cells = topology.face_cells
     normal = topology.face_normal
     face_area = topology.face_area
     reach = topology.face_reach
     swirl = topology.face_swirl
+    edge_normal = topology.boundary_normal
+    reach_of_wall = topology.boundary_reach
     edge_swirl = topology.boundary_swirl
     turns = frame.turns[0] != 0
     edge_start = topology.edge_start
@@ -128,8 +132,10 @@ def flux_chunk(
     real = type(gas.gamma)
     zero = real(0)
     p0 = real(1) / gas.gamma
-    residual[first:last] = zero
-    for entry in range(topology.chunk_start[chunk], topology.chunk_start[chunk + 1]):
+    for i in range(first, last):
+        for m in range(ROW):
+            residual[i, m] = zero
+    for entry in range(begin, end):
         face = chunk_faces[entry]
         i = face_cells[face, 0]
         j = face_cells[face, 1]
@@ -166,18 +172,19 @@ def flux_chunk(
         if j >= first and j < last:
             for m in range(ROW):
                 residual[j, m] -= f[m]
-    theta[:] = zero
+    for n in range(LANES):
+        theta[n] = zero
     for i in range(first, last):
         for m in range(edge_start[i], edge_start[i + 1]):
             row = edge_row[m]
-            nx = topology.boundary_normal[row, 0]
-            ny = topology.boundary_normal[row, 1]
-            nz = topology.boundary_normal[row, 2]
+            nx = edge_normal[row, 0]
+            ny = edge_normal[row, 1]
+            nz = edge_normal[row, 2]
             area = topology.boundary_area[row]
             if turns:
                 face_speed(frame, edge_swirl[row, 0], edge_swirl[row, 1], edge_swirl[row, 2], nx, ny, nz, speed)
             if row < walls:
-                push_wall(topology, rows, gradient, i, row, gas, stiffness, order, f)
+                push_wall(reach_of_wall, edge_normal, rows, gradient, i, row, gas, stiffness, order, f)
                 for n in range(LANES):
                     q = area * (f[n] - p0)
                     residual[i, VX + n] += q * nx
@@ -205,16 +212,16 @@ def flux_chunk(
 
 
 @distinct
-def push_wall(topology, rows, gradient, i, row, gas, stiffness, order, out):
+def push_wall(boundary_reach, boundary_normal, rows, gradient, i, row, gas, stiffness, order, out):
     """Fill `out` [lane] with the pressure on wall face `row` of cell i."""
     real = type(gas.gamma)
     reach = real(0) if order == 1 else real(1)
-    dx = topology.boundary_reach[row, 0] * reach
-    dy = topology.boundary_reach[row, 1] * reach
-    dz = topology.boundary_reach[row, 2] * reach
-    nx = topology.boundary_normal[row, 0]
-    ny = topology.boundary_normal[row, 1]
-    nz = topology.boundary_normal[row, 2]
+    dx = boundary_reach[row, 0] * reach
+    dy = boundary_reach[row, 1] * reach
+    dz = boundary_reach[row, 2] * reach
+    nx = boundary_normal[row, 0]
+    ny = boundary_normal[row, 1]
+    nz = boundary_normal[row, 2]
     for n in range(LANES):
         p = rows[i, PRS + n]
         step = gradient[i, 0, PRS + n] * dx + gradient[i, 1, PRS + n] * dy + gradient[i, 2, PRS + n] * dz
@@ -243,7 +250,9 @@ def fluxes(topology, state, gradient, sensor, free, frame, residual, gas, low_ma
     rows = state.reshape(state.shape[0], ROW)
     outflow = residual.reshape(state.shape[0], ROW)
     outside = free.reshape(free.shape[0], ROW)
-    for chunk in prange(topology.chunk_cells.shape[0] - 1):
+    chunk_cells = topology.chunk_cells
+    chunk_start = topology.chunk_start
+    for chunk in prange(chunk_cells.shape[0] - 1):
         left = np.empty(ROW, state.dtype)
         right = np.empty(ROW, state.dtype)
         ratio_l = np.empty(LANES, state.dtype)
@@ -253,7 +262,10 @@ def fluxes(topology, state, gradient, sensor, free, frame, residual, gas, low_ma
         f = np.empty(ROW, state.dtype)
         flux_chunk(
             topology,
-            chunk,
+            chunk_cells[chunk],
+            chunk_cells[chunk + 1],
+            chunk_start[chunk],
+            chunk_start[chunk + 1],
             rows,
             gradient,
             sensor,
@@ -278,5 +290,9 @@ def fluxes(topology, state, gradient, sensor, free, frame, residual, gas, low_ma
 def pressures_on_wall(topology, state, gradient, gas, stiffness, order, out):
     """Fill `out` [wall, lane] with the pressure that `fluxes` puts on each wall face."""
     rows = state.reshape(state.shape[0], ROW)
-    for row in prange(topology.walls):
-        push_wall(topology, rows, gradient, topology.boundary_cell[row], row, gas, stiffness, order, out[row])
+    cell = topology.boundary_cell
+    normal = topology.boundary_normal
+    reach = topology.boundary_reach
+    for wall in prange(topology.walls):
+        row = np.int32(wall)  # as in `fluxes`, so that `push_wall` is compiled once
+        push_wall(reach, normal, rows, gradient, cell[row], row, gas, stiffness, order, out[row])

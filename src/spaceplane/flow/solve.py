@@ -10,7 +10,7 @@ import numpy as np
 
 from spaceplane.errors import InputError
 from spaceplane.flow.coarsen import Sequence, sequence
-from spaceplane.flow.compiled import CACHE
+from spaceplane.flow.compilation import compile_kernels
 from spaceplane.flow.ensemble import Ensemble, free_stream
 from spaceplane.flow.march import Caution, History, converged, finished, march
 from spaceplane.flow.prolong import prolong
@@ -55,10 +55,7 @@ def solve(
     fine = levels.meshes[0]
     if not fine.cells:
         raise InputError("mesh: 0 cells; at least one is needed")
-    kernels = f"{settings.precision}-{conditions.gas}"
-    cold = not CACHE.is_complete(kernels)
-    if cold:
-        say("compile", 0, 1, "compiling kernels (once, ~30 s)")
+    compile_kernels(settings, conditions, progress)
     topologies = [prepare(level, settings.dtype) for level in levels.meshes]
     prepared = time.perf_counter()
     seconds = {"prepare": prepared - began}
@@ -75,8 +72,6 @@ def solve(
         for which in batches(retry):
             careful = Caution(min(5.0, settings.cfl_start), min(25.0, settings.cfl_max, boldest), 1.2, 0.25)
             job.run(which, careful, seconds)
-    if cold:
-        CACHE.mark_complete(kernels)
     records = tuple(judge(job.histories[c], settings) for c in range(len(conditions)))
     seconds["total"] = time.perf_counter() - began
     warnings = [f"condition {c}: {r.verdict}: {r.reason}" for c, r in enumerate(records) if not r.good]

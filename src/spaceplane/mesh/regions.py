@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from spaceplane.kernelcache import inner
 from spaceplane.mesh.compiled import kernel
 from spaceplane.mesh.unionfind import find, unite
 
@@ -157,7 +158,7 @@ def list_faces(cells, cell_index):
     return axes[:total].copy(), corner[:total].copy(), beside[:total].copy(), cell_faces
 
 
-@kernel
+@inner
 def _add_element(n, u0, v0, u1, v1, a, b, loops, ends):
     """Store the directed loop element (u0, v0) -> (u1, v1) between vertices a and b."""
     loops[n, 0] = u0
@@ -168,7 +169,7 @@ def _add_element(n, u0, v0, u1, v1, a, b, loops, ends):
     ends[n, 1] = b
 
 
-@kernel
+@inner
 def _gather(face, axes, corner, cell_index, states, points, segments, intervals, loops, ends, slot_count):
     """Collect the loop elements of a face: its cut edges first, then the fluid intervals of its four edges."""
     segment_start, segment_items, edge_ends = segments
@@ -234,7 +235,7 @@ def _gather(face, axes, corner, cell_index, states, points, segments, intervals,
     return n
 
 
-@kernel
+@inner
 def _connect(n, ends, parent, vertex_element):
     """Union-find over elements that share a vertex. `vertex_element` is scratch of -1 and is left so."""
     corners = np.full(4, -1, np.int32)
@@ -258,7 +259,7 @@ def _connect(n, ends, parent, vertex_element):
                 vertex_element[ends[m, side]] = -1
 
 
-@kernel
+@inner
 def _surrounding(hole, n, loops, parent):
     """Root of the loop that the ray from a hole along the first axis meets first, or -1."""
     u = 0.0
@@ -280,7 +281,7 @@ def _surrounding(hole, n, loops, parent):
     return best
 
 
-@kernel
+@inner
 def _join_holes(n, cut, loops, parent, area):
     """Join loops that wind round the body inside the face (no face edge, negative area) to the region around them."""
     for m in range(n):

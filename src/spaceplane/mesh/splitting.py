@@ -7,10 +7,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from spaceplane.kernelcache import inner
 from spaceplane.mesh.compiled import kernel
 
 
-@kernel
+@inner
 def _copy_row(target, n, source, m):
     """target[n] = source[m] for rows of three, far quicker to compile than the slice."""
     for d in range(3):
@@ -109,7 +110,7 @@ def split_edges(axis, x, slab, ends, tag, place, edge_triangle, first):
     return x2, ends2, tag2, place2, triangle2, (vertex, line, sign, crossing_place, crossing_triangle)
 
 
-@kernel
+@inner
 def _slab_range(slab, ends, start, loop, p):
     """Lowest and highest slab of polygon `p`'s vertices."""
     low = slab[ends[loop[start[p]] >> 1, loop[start[p]] & 1]]
@@ -121,7 +122,7 @@ def _slab_range(slab, ends, start, loop, p):
     return low, high
 
 
-@kernel
+@inner
 def _expand(slab, ends, first, start, loop, p, low, codes, slabs):
     """Write polygon `p`'s directed edge parts and their slabs, beginning where it comes down into slab `low`."""
     count = 0

@@ -15,6 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from spaceplane.errors import InputError
+from spaceplane.kernelcache import inner
 from spaceplane.mesh.compiled import kernel
 from spaceplane.mesh.splitting import first_parts, split_edges, split_polygons
 
@@ -141,7 +142,7 @@ def subdivide(points: np.ndarray, triangles: np.ndarray, right_of: float | None 
     )
 
 
-@kernel
+@inner
 def _turns(slab, ends, start, loop, p):
     """Number of changes between rising and falling around polygon `p`: 0 or 2 when it is unimodal."""
     first = 0

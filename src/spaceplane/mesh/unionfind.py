@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from spaceplane.kernelcache import inner
 from spaceplane.mesh.compiled import kernel
 
 
@@ -25,7 +26,7 @@ def bucket(keys, buckets):
     return start, items
 
 
-@kernel
+@inner
 def find(parent, n):
     """Root of item `n` in a union-find forest `parent` [item], halving the path."""
     while parent[n] != n:
@@ -34,7 +35,7 @@ def find(parent, n):
     return n
 
 
-@kernel
+@inner
 def unite(parent, a, b):
     """Join the trees of items `a` and `b` in a forest `parent` [item]; the smaller root stays."""
     a = find(parent, a)

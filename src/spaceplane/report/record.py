@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import asdict
 from datetime import UTC, datetime
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 
 from spaceplane import __version__
 from spaceplane.aero.axes import FORCES_AND_MOMENTS
@@ -28,6 +28,9 @@ from spaceplane.vehicle.controls import ControlDeflections
 from spaceplane.vehicle.presets import Vehicle
 from spaceplane.vehicle.shape import PARAMETERS
 from spaceplane.vehicle.surface import Surface
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 
 def result(analysis: Analysis) -> dict:

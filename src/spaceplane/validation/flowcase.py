@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from spaceplane.flow.compilation import begin
 from spaceplane.flow.settings import FlowSettings
 from spaceplane.flow.solution import FlowConditions, Solution
 from spaceplane.flow.solve import solve
@@ -42,7 +43,9 @@ def solve_body(
         if progress and phase.startswith("compile"):
             progress(f"{phase}: {text}", done)
 
-    return solve(generate(surface, mesh, say, sizing), conditions, FlowSettings(iterations=ITERATIONS), say)
+    settings = FlowSettings(iterations=ITERATIONS)
+    begin(settings, conditions)
+    return solve(generate(surface, mesh, say, sizing), conditions, settings, say)
 
 
 def reference_of(

@@ -5,8 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass
-
-import xarray as xr
+from typing import TYPE_CHECKING
 
 from spaceplane.aero.conditions import product
 from spaceplane.aero.flow_case import condition_record
@@ -16,6 +15,9 @@ from spaceplane.aero.inclination.solve import local_inclination
 from spaceplane.aero.integrate import Reference
 from spaceplane.progress import Progress
 from spaceplane.vehicle.surface import Surface
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 
 @dataclass(frozen=True)

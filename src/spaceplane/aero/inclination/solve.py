@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
-import xarray as xr
 
 from spaceplane.aero.inclination.laws import LEEWARD, WINDWARD
 from spaceplane.aero.inclination.panels import Panels, blunt_triangles, panels_of
@@ -13,6 +14,9 @@ from spaceplane.aero.integrate import WITH_SPREAD, Judgement, Reference, WallPie
 from spaceplane.flow.freestream import direction
 from spaceplane.flow.solution import FlowConditions
 from spaceplane.vehicle.surface import Surface
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 
 def local_inclination(

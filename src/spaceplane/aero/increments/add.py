@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
-import xarray as xr
 
 from spaceplane.aero.axes import FORCES_AND_MOMENTS
 from spaceplane.aero.increments.base_pressure import base_forces
@@ -14,6 +15,9 @@ from spaceplane.aero.integrate import BY_SOURCE, integrate
 from spaceplane.aero.loads import Reference, by_part, coefficients_of
 from spaceplane.errors import InputError
 from spaceplane.flow.solution import Solution
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 INVISCID = "inviscid"
 WITH_SOURCES = (*FORCES_AND_MOMENTS, "CA", "CN")

@@ -21,7 +21,6 @@ from __future__ import annotations
 
 import numpy as np
 from scipy.sparse import coo_matrix, csc_matrix, eye
-from scipy.sparse.linalg import spsolve
 
 from spaceplane.mesh.mesh import Mesh
 
@@ -53,6 +52,8 @@ def running_length(mesh: Mesh, pairs: np.ndarray, direction: np.ndarray, exponen
         direction: [wall, xyz] unit vectors of the surface flow, zero where there is none.
         exponent: m of the friction law, a number from 0 to below 1.
     """
+    from scipy.sparse.linalg import spsolve  # slow to import, and needed with friction only
+
     here, there = pairs.T
     step = mesh.wall_center[here] - mesh.wall_center[there]
     distance = np.maximum(np.linalg.norm(step, axis=1), 1e-300)

@@ -6,9 +6,9 @@ import math
 import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 
 from spaceplane.aero.integrate import TOTAL
 from spaceplane.aero.uncertainty.companion import RATIO
@@ -19,6 +19,9 @@ from spaceplane.errors import InputError
 from spaceplane.mesh.mesh import Mesh
 from spaceplane.mesh.settings import MeshSettings
 from spaceplane.plain import degrees
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 JUDGED = ("CL", "CD", "Cm")
 MOST_CELLS = 2_000_000
@@ -157,7 +160,7 @@ def refine(
             return _stopped(runs, trials, accuracy, found, met)
 
 
-Run = tuple[float, int, xr.Dataset]
+Run = tuple[float, int, "xr.Dataset"]
 """Wall cell in m, cells and coefficients."""
 
 

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-
-import xarray as xr
+from typing import TYPE_CHECKING
 
 from spaceplane.flow.solution import ConvergenceRecord
 from spaceplane.mesh.settings import MeshSettings
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 RATIO = 2.0
 """Wall cell of the companion on that of the mesh."""

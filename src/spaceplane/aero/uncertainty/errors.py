@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
-import xarray as xr
 
 from spaceplane.aero.integrate import TOTAL, WITH_SPREAD
 from spaceplane.aero.uncertainty.grid import half_width
 from spaceplane.aero.uncertainty.settings import ITERATION, MESH
 from spaceplane.plain import finite
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 SCALES = {
     "lift": ("CL", "CN"),
