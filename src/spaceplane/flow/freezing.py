@@ -25,8 +25,9 @@ FROM_AGE = 20
 FROM_DROP, TO_DROP = 1.5, 4.0
 """Decades below which a flow is not formed yet, and above which single precision is what stops it."""
 
-STEADY = 2e-4
-"""Half peak-to-peak of the force over the span, on its size, that counts as standing."""
+CALM, STEADY = 2e-3, 2e-4
+"""Half peak-to-peak of the force over the span, on its size, below which a sensor is held and limits are frozen. In
+rougher flow a sensor that may only rise would keep the mark of every wave that passes."""
 
 THAWED_BY, REST = 2.0, 20
 """Rise of the residual since the freezing at which a lane is let go, and iterations until it may freeze again."""
@@ -68,11 +69,13 @@ class Freezer:
         thawed = self.frozen & (norms > THAWED_BY * self._mark)
         self.frozen &= ~thawed
         self._rest = np.where(thawed, REST, np.maximum(self._rest - 1, 0))
-        for lane in np.flatnonzero(~self.frozen & (self._rest == 0)):
+        for lane in np.flatnonzero(~self.frozen):
             history = histories[lane]
+            spread = history.spread(SPAN)
+            self.held[lane] &= spread < CALM
             if history.age <= FROM_AGE or history.gain(SPAN) > 0.0:
                 continue
-            if self.held[lane] and FROM_DROP < drop[lane] < TO_DROP and history.spread(SPAN) < STEADY:
+            if self.held[lane] and not self._rest[lane] and FROM_DROP < drop[lane] < TO_DROP and spread < STEADY:
                 self.frozen[lane] = True
                 self._mark[lane] = norms[lane]
-            self.held[lane] = True
+            self.held[lane] = spread < CALM
