@@ -169,7 +169,7 @@ def test_the_largest_cfl_number_falls_with_the_mach_number_and_stays_within_what
 class Standing:
     """A history whose residual gains `gain` decades over any window while its force wanders by `spread`."""
 
-    def __init__(self, gain=0.0, spread=0.0, age=50):
+    def __init__(self, gain=0.0, spread=0.0, age=30):
         self.age, self.gain, self.spread = age, (lambda window: gain), (lambda window: spread)
 
 
@@ -179,20 +179,30 @@ def test_lanes_freeze_when_nothing_is_gained_and_thaw_when_that_was_wrong():
     histories[:3] = Standing(gain=0.1), Standing(spread=0.01), Standing(age=20)
     drop = 2.0 * lanes
     drop[3:5] = 1.0, 4.5
-    freezer.update(histories, lanes, drop)
+    freezer.update(histories, lanes, lanes, drop)
     assert not freezer.frozen.any()
     np.testing.assert_array_equal(np.flatnonzero(~freezer.held), [0, 1, 2])
-    freezer.update(histories, lanes, drop)
+    freezer.update(histories, lanes, lanes, drop)
     np.testing.assert_array_equal(np.flatnonzero(~freezer.frozen), [0, 1, 2, 3, 4])
     norms = lanes.copy()
     norms[6] = 2.1
-    freezer.update(histories, norms, drop)
+    freezer.update(histories, norms, lanes, drop)
     for _ in range(20):
         assert not freezer.frozen[6] and freezer.frozen[7]
-        freezer.update(histories, lanes, drop)
+        freezer.update(histories, lanes, lanes, drop)
     assert freezer.frozen[6]
     freezer.begin(np.array([6]))
     assert not freezer.frozen[6] and not freezer.held[6]
+
+
+def test_flows_that_settle_late_have_their_sensor_held_near_their_best():
+    freezer, lanes = Freezer(), np.ones(LANES)
+    histories = [Standing(gain=0.1, spread=0.1, age=50)] * LANES
+    histories[0] = Standing(gain=0.1, spread=0.1, age=49)
+    norms = lanes.copy()
+    norms[1] = 2.1
+    freezer.update(histories, norms, lanes, 2.0 * lanes)
+    np.testing.assert_array_equal(np.flatnonzero(~freezer.held), [0, 1])
 
 
 def test_frozen_lanes_keep_their_limits_and_others_do_not():

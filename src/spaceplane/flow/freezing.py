@@ -19,8 +19,9 @@ from spaceplane.flow.compiled import LANES
 SPAN = 6
 """Iterations without a gain after which something is done."""
 
-FROM_AGE = 20
-"""Iterations in which flows form: nothing is held in them."""
+FROM_AGE, LATE_AGE = 20, 50
+"""Iterations in which flows form: nothing is held in them; and from which on a flow that has still not settled has its
+sensor held whenever its residual is near its best, rough as it may be."""
 
 FROM_DROP, TO_DROP = 1.5, 4.0
 """Decades below which a flow is not formed yet, and above which single precision is what stops it."""
@@ -64,18 +65,18 @@ class Freezer:
         self.held[lanes] = self.frozen[lanes] = False
         self._rest[lanes] = 0
 
-    def update(self, histories: Sequence[Judged], norms: np.ndarray, drop: np.ndarray) -> None:
-        """Judge all lanes by their histories, residual and its drop in decades [lane]."""
+    def update(self, histories: Sequence[Judged], norms: np.ndarray, best: np.ndarray, drop: np.ndarray) -> None:
+        """Judge all lanes by their histories, residual, the best one so far and its drop in decades [lane]."""
         thawed = self.frozen & (norms > THAWED_BY * self._mark)
         self.frozen &= ~thawed
         self._rest = np.where(thawed, REST, np.maximum(self._rest - 1, 0))
         for lane in np.flatnonzero(~self.frozen):
             history = histories[lane]
             spread = history.spread(SPAN)
-            self.held[lane] &= spread < CALM
-            if history.age <= FROM_AGE or history.gain(SPAN) > 0.0:
-                continue
-            if self.held[lane] and not self._rest[lane] and FROM_DROP < drop[lane] < TO_DROP and spread < STEADY:
+            stalled = history.age > FROM_AGE and history.gain(SPAN) <= 0.0
+            ready = self.held[lane] and not self._rest[lane] and FROM_DROP < drop[lane] < TO_DROP
+            if stalled and ready and spread < STEADY:
                 self.frozen[lane] = True
                 self._mark[lane] = norms[lane]
-            self.held[lane] = spread < CALM
+            late = history.age >= LATE_AGE and norms[lane] < 2.0 * best[lane]
+            self.held[lane] = late or (spread < CALM and (stalled or self.held[lane]))

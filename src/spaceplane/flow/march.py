@@ -233,7 +233,7 @@ def march(
         calm = steering.advance(norms, drop)
         age = np.array([history.age for history in here])
         if ensemble.order == 2:
-            freezer.update(here, norms, drop)
+            freezer.update(here, norms, steering.best, drop)
             ensemble.hold[:] = freezer.held
             ensemble.frozen[:] = freezer.frozen
         quiet = (drop > FORMED_AGAIN_DROP) & (norms < 2.0 * steering.best) & ~undone
