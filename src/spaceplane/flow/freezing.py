@@ -10,11 +10,11 @@ with the limits of a flow whose forces already stand, and it converges (V. Venka
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Protocol
 
 import numpy as np
 
 from spaceplane.flow.compiled import LANES
+from spaceplane.flow.history import History
 
 SPAN = 6
 """Iterations without a gain after which something is done."""
@@ -34,20 +34,6 @@ THAWED_BY, REST = 2.0, 20
 """Rise of the residual since the freezing at which a lane is let go, and iterations until it may freeze again."""
 
 
-class Judged(Protocol):
-    """What is asked of a lane's history; see `march.History`."""
-
-    @property
-    def age(self) -> int:
-        """Iterations done."""
-
-    def gain(self, window: int) -> float:
-        """Decades gained over the last `window` iterations."""
-
-    def spread(self, window: int) -> float:
-        """Half peak-to-peak of the force over them."""
-
-
 class Freezer:
     """Which lanes of an ensemble are frozen.
 
@@ -65,7 +51,7 @@ class Freezer:
         self.held[lanes] = self.frozen[lanes] = False
         self._rest[lanes] = 0
 
-    def update(self, histories: Sequence[Judged], norms: np.ndarray, best: np.ndarray, drop: np.ndarray) -> None:
+    def update(self, histories: Sequence[History], norms: np.ndarray, best: np.ndarray, drop: np.ndarray) -> None:
         """Judge all lanes by their histories, residual, the best one so far and its drop in decades [lane]."""
         thawed = self.frozen & (norms > THAWED_BY * self._mark)
         self.frozen &= ~thawed

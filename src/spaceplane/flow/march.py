@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from itertools import count
 
 import numpy as np
@@ -12,6 +12,7 @@ import numpy as np
 from spaceplane.flow.compiled import LANES
 from spaceplane.flow.ensemble import Ensemble
 from spaceplane.flow.freezing import Freezer
+from spaceplane.flow.history import History
 from spaceplane.flow.settings import FlowSettings
 
 ACCELERATED_BELOW_MACH, ACCELERATED_AFTER_DROP = 2.0, 2.0
@@ -26,42 +27,6 @@ REJECTED_RISE = 2.5
 FORMED_AGAIN_EVERY, FORMED_AGAIN_DROP = 3, 1.0
 """The diagonal blocks of a lane are formed in every iteration, but in every third once its residual has fallen by this
 many decades and is near its best: the flow changes little by then. Lane by lane, so that companions change nothing."""
-
-
-@dataclass
-class History:
-    """What one condition did on one level."""
-
-    residual: list[float] = field(default_factory=list)
-    force: list[np.ndarray] = field(default_factory=list)
-    failure: str = ""
-    done: bool = False
-
-    @property
-    def age(self) -> int:
-        """Iterations done."""
-        return max(len(self.residual) - 1, 0)
-
-    def drop(self) -> float:
-        """Decades that the residual has fallen since the first iteration."""
-        if not self.residual:
-            return 0.0
-        first, last = self.residual[0], self.residual[-1]
-        return float(np.log10(max(first, 1e-300) / max(last, 1e-300)))
-
-    def gain(self, window: int) -> float:
-        """Decades by which the best residual of the last `window` iterations is below the best one before them;
-        infinite where there is none before."""
-        if len(self.residual) <= window:
-            return float("inf")
-        before, since = min(self.residual[:-window]), min(self.residual[-window:])
-        return float(np.log10(max(before, 1e-300) / max(since, 1e-300)))
-
-    def spread(self, window: int) -> float:
-        """Half peak-to-peak of the force over the last `window` iterations, on the mean force's size."""
-        force = np.array(self.force[-window:])
-        scale = max(float(np.linalg.norm(force.mean(axis=0))), 1e-6)
-        return float(0.5 * np.ptp(force, axis=0).max() / scale)
 
 
 @dataclass(frozen=True)

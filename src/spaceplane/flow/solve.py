@@ -12,7 +12,8 @@ from spaceplane.errors import InputError
 from spaceplane.flow.coarsen import Sequence, sequence
 from spaceplane.flow.compilation import compile_kernels
 from spaceplane.flow.ensemble import Ensemble, free_stream
-from spaceplane.flow.march import Caution, History, converged, finished, march
+from spaceplane.flow.history import History
+from spaceplane.flow.march import Caution, converged, finished, march
 from spaceplane.flow.prolong import prolong
 from spaceplane.flow.settings import FlowSettings, check
 from spaceplane.flow.solution import EQUILIBRIUM, PERFECT, ConvergenceRecord, FlowConditions, Solution

@@ -1,0 +1,43 @@
+"""What one condition did on one level: residuals, forces, and what they say about its convergence."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+
+@dataclass
+class History:
+    """What one condition did on one level."""
+
+    residual: list[float] = field(default_factory=list)
+    force: list[np.ndarray] = field(default_factory=list)
+    failure: str = ""
+    done: bool = False
+
+    @property
+    def age(self) -> int:
+        """Iterations done."""
+        return max(len(self.residual) - 1, 0)
+
+    def drop(self) -> float:
+        """Decades that the residual has fallen since the first iteration."""
+        if not self.residual:
+            return 0.0
+        first, last = self.residual[0], self.residual[-1]
+        return float(np.log10(max(first, 1e-300) / max(last, 1e-300)))
+
+    def gain(self, window: int) -> float:
+        """Decades by which the best residual of the last `window` iterations is below the best one before them;
+        infinite where there is none before."""
+        if len(self.residual) <= window:
+            return float("inf")
+        before, since = min(self.residual[:-window]), min(self.residual[-window:])
+        return float(np.log10(max(before, 1e-300) / max(since, 1e-300)))
+
+    def spread(self, window: int) -> float:
+        """Half peak-to-peak of the force over the last `window` iterations, on the mean force's size."""
+        force = np.array(self.force[-window:])
+        scale = max(float(np.linalg.norm(force.mean(axis=0))), 1e-6)
+        return float(0.5 * np.ptp(force, axis=0).max() / scale)
