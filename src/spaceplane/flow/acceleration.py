@@ -134,6 +134,7 @@ def step_chunk(
     slots,
     largest,
     gas,
+    least,
     ceiling,
     pace,
     count,
@@ -156,9 +157,14 @@ def step_chunk(
         for n in range(LANES):
             x = step[RHO + n] / rows[i, RHO + n]
             y = step[PRS + n] / rows[i, PRS + n]
-            size = max(max(-x, half * x), max(-y, half * y))
-            share = largest / size if size > largest else one
+            u = rows[i, VX + n]
+            v = rows[i, VY + n]
+            w = rows[i, VZ + n]
+            fastest = u * u + v * v + w * w + gas.gamma * rows[i, PRS + n] / rows[i, RHO + n]
             wild = step[VX + n] * step[VX + n] + step[VY + n] * step[VY + n] + step[VZ + n] * step[VZ + n]
+            z = largest * math.sqrt(wild / fastest)
+            size = max(max(max(-x, half * x), max(-y, half * y)), z)
+            share = largest / size if size > largest else one
             # Not a number compares false.
             share = share if max(size, zero) + wild < real(1e30) else zero
             count[n] += one if share < one else zero
@@ -171,7 +177,7 @@ def step_chunk(
         for m in range(ROW):
             step[m] = factor[m] * step[m] if factor[m] > zero else zero
         for n in range(LANES):
-            dr, dp = bounded(rows[i, RHO + n], rows[i, PRS + n], step[RHO + n], step[PRS + n], gas.gamma)
+            dr, dp = bounded(rows[i, RHO + n], rows[i, PRS + n], step[RHO + n], step[PRS + n], least[0, n], least[1, n])
             r = rows[i, RHO + n] + dr
             u = rows[i, VX + n] + step[VX + n]
             v = rows[i, VY + n] + step[VY + n]
@@ -192,15 +198,29 @@ def step_chunk(
 
 @kernel
 def apply_step(
-    topology, state, change, last_change, last_step, combined, weights, slots, largest, gas, ceiling, pace, limited
+    topology,
+    state,
+    change,
+    last_change,
+    last_step,
+    combined,
+    weights,
+    slots,
+    largest,
+    gas,
+    least,
+    ceiling,
+    pace,
+    limited,
 ):
     """state += change - sum of weights[slot, 5 x lane] combined[:, slot], held within physical bounds cell by cell.
 
     The step is scaled so that density and pressure fall by at most `largest` of themselves and rise by twice that, and
-    left out where it is not a number; no density or pressure falls below `bounds.THINNEST`; then the total enthalpy is
-    brought down to `ceiling` [lane] at unchanged density and Mach number. Steady flow has the free stream's total
-    enthalpy everywhere, so that the ceiling acts on transients only: in them, large steps would heat wakes until they
-    break.
+    velocity changes by no more than root(V^2 + a^2): a wilder one, brought down to the ceiling, would leave no
+    pressure. It is left out where it is not a number. No density or pressure falls below the `least` ones [2, lane]
+    (see `bounds`); then the total enthalpy is brought down to `ceiling` [lane] at unchanged density and Mach number.
+    Steady flow has the free stream's total enthalpy everywhere, so that the ceiling acts on transients only: in them,
+    large steps would heat wakes until they break.
 
     Keeps the change and the step for the next call. `limited` [chunk, lane] counts cells whose step was scaled; their
     `pace` [cell, lane], a factor on the CFL number, is halved, while that of the others grows back to 1: a few cells in
@@ -226,6 +246,7 @@ def apply_step(
             slots,
             largest,
             gas,
+            least,
             ceiling,
             pace,
             limited[chunk],

@@ -6,6 +6,7 @@ import numpy as np
 
 from spaceplane.flow import implicit
 from spaceplane.flow.acceleration import Anderson, apply_step, depth_for
+from spaceplane.flow.bounds import least_values
 from spaceplane.flow.compiled import LANES, ROW
 from spaceplane.flow.equilibrium import Heating
 from spaceplane.flow.fluxes import FLUXES
@@ -77,6 +78,7 @@ class Ensemble:
         self.pace = np.ones((cells, LANES), dtype)
         self.inverse = np.zeros((cells, 25 * LANES), dtype)
         self.per_pressure, self.ceiling = np.empty((2, LANES), dtype)
+        self.least = np.empty((2, LANES), dtype)
         self.scale(np.arange(LANES))
         depth = depth_for(np.asarray(conditions.mach), settings.anderson_depth) if order == 2 else 0
         self.anderson = Anderson(cells, self.free, depth)
@@ -96,12 +98,14 @@ class Ensemble:
         self.anderson.forget(lane, self.free)
 
     def scale(self, lanes: np.ndarray) -> None:
-        """Set dynamic pressure, rotation, heat and ceiling of total enthalpy in these lanes, by their conditions."""
+        """Set dynamic pressure, rotation, heat, least values and ceiling of total enthalpy in these lanes, by their
+        conditions."""
         self.frame = frame_of(self.conditions, self.lanes, self.dtype)
         if self.heating is not None:
             self.heating.scale(self.conditions.take(self.lanes), self.free)
         mach = self.conditions.mach[self.lanes[lanes]]
         self.per_pressure[lanes] = 2.0 / mach**2
+        self.least[:, lanes] = least_values(mach, self.conditions.gamma)
         self.ceiling[lanes] = HIGHEST_ENTHALPY * (1.0 / (self.conditions.gamma - 1.0) + 0.5 * mach**2)
 
     def evaluate(self) -> np.ndarray:
@@ -115,7 +119,7 @@ class Ensemble:
     def norms(self) -> np.ndarray:
         """[lane] norm of the residual, fp64."""
         sums = np.empty((len(self.topology.chunk_cells) - 1, LANES))
-        implicit.squared_norms(self.topology.part(Chunks), self.state, self.residual, self.gamma, sums)
+        implicit.squared_norms(self.topology.part(Chunks), self.state, self.residual, self.least, sums)
         return np.sqrt(sums.sum(axis=0))
 
     def reconstruct(self) -> None:
@@ -201,6 +205,7 @@ class Ensemble:
                 self.change,
                 self.passed,
                 self.gas,
+                self.least,
                 forward,
             )
         self.mirror(self.change)
@@ -239,6 +244,7 @@ class Ensemble:
             self.anderson.used,
             self.dtype(largest),
             self.gas,
+            self.least,
             self.ceiling,
             self.pace,
             limited,

@@ -328,7 +328,9 @@ def add_products(sums, rows, sensor, change, i, j, scale, nx, ny, nz, gas):
 
 
 @distinct
-def sweep_block(topology, first, count, rows, sensor, residual, inverse, change, passed, gas, forward, sums, rhs):
+def sweep_block(
+    topology, first, count, rows, sensor, residual, inverse, change, passed, gas, least, forward, sums, rhs
+):
     """The part of `sweep` for `count` cells from `first` on, upwards or downwards; `sums`, `rhs` scratch rows."""
     start = topology.start
     split = topology.split
@@ -361,13 +363,15 @@ def sweep_block(topology, first, count, rows, sensor, residual, inverse, change,
                     + inverse[i, (5 * k + 4) * LANES + n] * rhs[PRS + n]
                 )
         for n in range(LANES):
-            dr, dp = bounded(rows[i, RHO + n], rows[i, PRS + n], change[i, RHO + n], change[i, PRS + n], gas.gamma)
+            dr, dp = bounded(
+                rows[i, RHO + n], rows[i, PRS + n], change[i, RHO + n], change[i, PRS + n], least[0, n], least[1, n]
+            )
             change[i, RHO + n] = dr
             change[i, PRS + n] = dp
 
 
 @kernel
-def sweep(topology, state, sensor, residual, inverse, change, passed, gas, forward):
+def sweep(topology, state, sensor, residual, inverse, change, passed, gas, least, forward):
     """One Gauss-Seidel pass over all cells, colour by colour: change_i = D^-1 (-residual_i - sum of off-diagonal
     products).
 
@@ -375,7 +379,7 @@ def sweep(topology, state, sensor, residual, inverse, change, passed, gas, forwa
     before, in the other direction, formed with the same changes: it left them in `passed` [cell, 5, lane], zero before
     the first forward pass, so that two passes cost one
     (P. Knabner, L. Angermann, Numerical Methods for Elliptic and Parabolic Partial Differential Equations, 5.1).
-    A change that would take density or pressure below their bounds stops there (projected Gauss-Seidel: O. L.
+    A change that would take density or pressure below the `least` [2, lane] stops there (projected Gauss-Seidel: O. L.
     Mangasarian, J. Optim. Theory Appl. 22 (1977) 465-485): neighbours of a cell at its bound must not count on more,
     or the march comes to rest where the residual does not.
 
@@ -400,15 +404,15 @@ def sweep(topology, state, sensor, residual, inverse, change, passed, gas, forwa
             sums = np.empty(ROW, state.dtype)
             rhs = np.empty(ROW, state.dtype)
             sweep_block(
-                topology, first, count, rows, sensor, outflow, inverse, changes, others, gas, forward, sums, rhs
+                topology, first, count, rows, sensor, outflow, inverse, changes, others, gas, least, forward, sums, rhs
             )
 
 
 @kernel
-def squared_norms(topology, state, residual, gamma, out):
+def squared_norms(topology, state, residual, least, out):
     """Fill `out` [chunk, lane] (fp64) with the sum of (net mass outflow)^2/volume over the chunk's cells.
 
-    Cells at the least density or pressure do not count: the bound, not the balance, holds them.
+    Cells at the `least` [2, lane] density or pressure do not count: the bound, not the balance, holds them.
     """
     chunk_cells = topology.chunk_cells
     volume = topology.volume
@@ -419,5 +423,5 @@ def squared_norms(topology, state, residual, gamma, out):
             scale = 1.0 / volume[i]
             for n in range(LANES):
                 value = np.float64(residual[i, 0, n])
-                value = 0.0 if at_bound(state[i, 0, n], state[i, 4, n], gamma) else value
+                value = 0.0 if at_bound(state[i, 0, n], state[i, 4, n], least[0, n], least[1, n]) else value
                 out[chunk, n] += value * value * scale

@@ -21,6 +21,10 @@ ACCELERATED_BELOW_MACH, ACCELERATED_AFTER_DROP = 2.0, 2.0
 WORTH_WAITING = 0.1
 """Decades that a residual must gain in two windows to be worth waiting for, once the forces stand."""
 
+FORMED_AT, FORMING_CFL, FORMING_GROWTH = 2.0, 40.0, 1.3
+"""Decades at which a supersonic flow counts as formed; CFL number and its growth from one step to the next until then,
+from Mach 2.5 on: bolder steps throw wakes about that must then come to rest, if they do not break."""
+
 REJECTED_RISE = 2.5
 """A step after which the residual is this many times the last one is taken back."""
 
@@ -40,11 +44,11 @@ class Caution:
 
 
 def starting_cfl(mach: np.ndarray, caution: Caution, impulsive: bool) -> np.ndarray:
-    """[lane] first CFL number: a fifth of `cfl_start` from the free stream; falling between Mach 2 and 5, there to 1
-    or 5."""
+    """[lane] first CFL number: a fifth of `cfl_start` from the free stream, falling to 1 between Mach 2 and 5;
+    otherwise `cfl_start`, falling to 5 between Mach 2 and 2.5."""
     first = caution.cfl_start * (0.2 if impulsive else 1.0)
-    lowest = min(first, 1.0 if impulsive else 5.0)
-    return first + np.clip((mach - 2.0) / 3.0, 0.0, 1.0) * (lowest - first)
+    lowest, at = (1.0, 5.0) if impulsive else (5.0, 2.5)
+    return np.interp(mach, [2.0, at], [first, min(first, lowest)])
 
 
 def highest_cfl(mach: np.ndarray, caution: Caution) -> np.ndarray:
@@ -59,6 +63,7 @@ class Steering:
 
     Attributes:
         cfl, ceiling: [lane] CFL number and the largest it may reach.
+        early_growth, early_ceiling: [lane] growth from step to step and ceiling while the flow forms.
         before, best: [lane] last and smallest residual; infinite before the first.
         limited: [lane] share of cells held back in the last step.
         trusted: [lane] whether Anderson acceleration may be used.
@@ -67,13 +72,19 @@ class Steering:
     def __init__(self, mach: np.ndarray, caution: Caution, impulsive: bool):
         self.caution, self.impulsive = caution, impulsive
         self.cfl, self.ceiling, self.limited, self.before, self.best = np.zeros((5, len(mach)))
+        self.early_growth, self.early_ceiling = np.zeros((2, len(mach)))
         self.trusted = np.zeros(len(mach), dtype=bool)
         self.begin(np.arange(len(mach)), mach)
 
     def begin(self, lanes: np.ndarray, mach: np.ndarray) -> None:
         """Start anew in the lanes of these indices, which now hold flows at `mach`."""
         self.cfl[lanes] = starting_cfl(mach, self.caution, self.impulsive)
-        self.ceiling[lanes] = highest_cfl(mach, self.caution)
+        self.ceiling[lanes] = highest = highest_cfl(mach, self.caution)
+        bold = self.caution.growth
+        self.early_growth[lanes] = np.interp(mach, [2.0, 2.5], [bold, min(bold, FORMING_GROWTH)])
+        self.early_ceiling[lanes] = np.minimum(
+            highest, np.interp(mach, [2.0, 2.5], [self.caution.cfl_max, FORMING_CFL])
+        )
         self.limited[lanes] = 0.0
         self.before[lanes] = self.best[lanes] = np.inf
         self.trusted[lanes] = mach < ACCELERATED_BELOW_MACH
@@ -87,7 +98,10 @@ class Steering:
     def advance(self, norms: np.ndarray, drop: np.ndarray) -> np.ndarray:
         """Take in the residuals and their drop in decades; [lane] whether the next step may be accelerated."""
         first = np.isinf(self.before)
-        self.cfl = np.where(first, self.cfl, np.minimum(self.feedback(norms), self.ceiling))
+        forming = drop < FORMED_AT
+        growth = np.where(forming, self.early_growth, self.caution.growth)
+        ceiling = np.where(forming, self.early_ceiling, self.ceiling)
+        self.cfl = np.where(first, self.cfl, np.minimum(self.feedback(norms, growth), ceiling))
         # Once the residual has risen well above its best, the condition goes on without acceleration.
         self.trusted &= norms < 2.0 * self.best
         self.trusted |= (drop > ACCELERATED_AFTER_DROP) & (norms < 1.2 * self.best)
@@ -96,13 +110,13 @@ class Steering:
         self.before = norms
         return calm
 
-    def feedback(self, now: np.ndarray) -> np.ndarray:
-        """[lane] next CFL number: grows while the residual behaves.
+    def feedback(self, now: np.ndarray, growth: np.ndarray) -> np.ndarray:
+        """[lane] next CFL number: grows by `growth` while the residual behaves.
 
         It falls when the residual jumps, has risen far above its best, or when many cells had to be held back.
         """
         grown = now / np.maximum(self.before, 1e-300)
-        factor = np.where(grown < 1.2, self.caution.growth, 1.0)
+        factor = np.where(grown < 1.2, growth, 1.0)
         factor = np.where(self.limited > 2e-2, 1.0, factor)
         factor = np.where(now > 4.0 * self.best, 0.8, factor)
         factor = np.where((grown > 2.0) | (self.limited > 0.1), 0.5, factor)
@@ -112,7 +126,7 @@ class Steering:
 def converged(history: History, settings: FlowSettings) -> bool:
     """Whether a condition is good on the fine mesh: residual and force window together.
 
-    Either the residual fell by `residual_drop` with forces within twice the tolerance; or, where it gains nothing more,
+    Either the residual fell by `residual_drop` with forces within the tolerance; or, where it gains nothing more,
     by half a decade more than `least_drop` with forces standing over two windows, or by `least_drop` with forces
     standing over three.
     """
@@ -121,7 +135,7 @@ def converged(history: History, settings: FlowSettings) -> bool:
     if length <= window:
         return False
     if drop >= settings.residual_drop:
-        return history.spread(window) < 2 * tolerance
+        return history.spread(window) < tolerance
     if history.gain(2 * window) > WORTH_WAITING:
         return False
     if drop >= settings.least_drop + 0.5:

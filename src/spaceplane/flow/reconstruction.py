@@ -155,7 +155,9 @@ def gradient_chunk(
             eps2[PRS + n] = noise * (gamma * p) * (gamma * p)
             ratio = max(high[PRS + n] / p, p / low[PRS + n])
             squeeze = -(gx[VX + n] + gy[VY + n] + gz[VZ + n]) * h / math.sqrt(gamma * p / r)
-            theta = max(shock_weight(ratio, squeeze, theta_low, theta_high), hold[n] * sensor[i, n])
+            # Not a number, left by a step that was taken back, compares false.
+            held = sensor[i, n] if hold[n] * sensor[i, n] > zero else zero
+            theta = max(shock_weight(ratio, squeeze, theta_low, theta_high), held)
             theta = sensor[i, n] if frozen[n] > zero else theta
             sensor[i, n] = theta
             cut[n] = theta

@@ -33,9 +33,10 @@ class FlowSettings:
         low_mach: local Mach number below which the low-Mach correction stops shrinking the normal jump; 1 switches it
             off.
         wall_stiffness: share of the acoustic response to flow through the wall added to the wall pressure (0 to 1).
-        cfl_start: first pseudo-time CFL number; the impulsive start on the coarsest level uses a fifth of it, and from
-            Mach 2 to 5 it falls (to 1 for the impulsive start).
-        cfl_max: largest CFL number; falls to 60 at Mach 5 and to 20 from Mach 10 on.
+        cfl_start: first pseudo-time CFL number; falls to 5 between Mach 2 and 2.5. The impulsive start on the coarsest
+            level uses a fifth of it, falling to 1 between Mach 2 and 5.
+        cfl_max: largest CFL number; falls to 60 at Mach 5 and to 20 from Mach 10 on, and from Mach 2.5 on it is 40
+            until the residual has fallen two decades.
         sweeps: symmetric Gauss-Seidel sweeps per iteration.
         anderson_depth: earlier iterates combined by Anderson acceleration, at most three from Mach 1.2 up; 0 switches
             it off.
