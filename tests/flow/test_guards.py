@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from spaceplane.flow.bounds import UNSEEN, at_bound, bounded, least_values
+from spaceplane.flow.bounds import at_bound, bounded, least_values
 from spaceplane.flow.compiled import LANES
 from spaceplane.flow.deadwater import dead_water
 from spaceplane.flow.freezing import Freezer
@@ -154,10 +154,9 @@ def test_increments_stop_at_the_least_density_and_pressure():
 
 
 def test_what_the_least_pressure_adds_is_not_seen_in_cp():
-    mach = np.array([0.3, 1.0, 2.0, 2.5, 2.6, 2.75, 3.0, 5.0, 10.0, 25.0])
+    mach = np.array([0.8, 1.2, 2.0, 2.5, 2.6, 2.75, 3.0, 5.0, 10.0, 25.0])
     density, pressure = least_values(mach, GAMMA)
-    assert (GAMMA * pressure / (0.5 * GAMMA * mach**2) <= 1.0001 * UNSEEN)[2:].all()
-    assert (GAMMA * pressure < 1e-4)[:4].all()
+    assert (GAMMA * pressure / (0.5 * GAMMA * mach**2) < 5e-4).all()
     np.testing.assert_allclose(GAMMA * pressure, 0.5 * density**GAMMA)
     assert (np.diff(density) >= 0.0).all() and density.max() < 0.021
 

@@ -32,6 +32,11 @@ def test_barth_jespersen_never_passes_the_neighbours(room, step):
     assert plain(limiters.barth_jespersen)(room, step, np.float64(0.0)) * step <= room + 1e-12
 
 
+def test_room_of_round_off_is_no_room():
+    """Room is a sum of halves: beside a large fall, a rise of nothing comes out as a fall of round-off."""
+    assert plain(limiters.barth_jespersen)(np.float32(-6e-8), np.float32(1e-12), np.float32(0.0)) == 0.0
+
+
 @pytest.mark.parametrize("name", FUNCTIONS)
 def test_no_limiting_with_room_to_spare(name):
     assert plain(FUNCTIONS[name])(np.float64(1.0), np.float64(0.2), np.float64(0.0)) == pytest.approx(1.0, abs=1e-12)

@@ -10,9 +10,11 @@ import pytest
 from spaceplane.errors import InputError
 from spaceplane.flow.compiled import LANES
 from spaceplane.flow.ensemble import Ensemble
+from spaceplane.flow.history import History
 from spaceplane.flow.settings import FlowSettings
 from spaceplane.flow.solution import FlowConditions
 from spaceplane.flow.solve import solve
+from spaceplane.flow.topology import prepare
 
 from .structured import sphere
 
@@ -130,3 +132,23 @@ def test_more_conditions_than_lanes():
     drag = force(solution)[:, 0]
     assert np.isfinite(drag).all() and len(solution.records) == 35
     assert np.abs(np.diff(drag)).max() < 0.05 * drag.mean()
+
+
+def test_the_free_stream_s_residual_is_known_without_solving():
+    """It bounds the residual by which falls are measured: a coarse level gone astray gains no decades."""
+    streams = conditions([2.0, 0.6], [15.0, 5.0], [3.0, 0.0])
+    ensemble = Ensemble(MESH, prepare(MESH, np.float64), streams, FlowSettings(precision="double"), 2)
+    np.testing.assert_allclose(ensemble.evaluate()[:2], ensemble.impulsive_norms(), rtol=1e-12)
+    astray = History(impulsive=1.0, residual=[1e9, 1e-1])
+    assert astray.drop() == pytest.approx(1.0)
+    assert History(impulsive=1.0, residual=[1e-1, 1e-3]).drop() == pytest.approx(2.0)
+
+
+def test_limiters_agree_on_a_bow_shock_and_converge():
+    forces = []
+    for limiter in ("venkatakrishnan", "barth_jespersen"):
+        solution = solve(MESH, conditions([1.5, 2.0], [5.0, 5.0]), FlowSettings(limiter=limiter))
+        assert all(record.good and record.residual_drop > 2.5 for record in solution.records)
+        forces.append(force(solution))
+    np.testing.assert_allclose(*forces, atol=0.03)
+    assert not np.array_equal(*forces)

@@ -122,6 +122,19 @@ class Ensemble:
         implicit.squared_norms(self.topology.part(Chunks), self.state, self.residual, self.least, sums)
         return np.sqrt(sums.sum(axis=0))
 
+    def impulsive_norms(self) -> list[float]:
+        """Norm of the residual of each condition's free stream: what it would blow through the walls; infinite without.
+
+        At least a thousandth of what would flow through them head on, for streams along all walls.
+        """
+        conditions, mesh = self.conditions, self.mesh
+        walls = np.zeros((mesh.cells, 3))
+        np.add.at(walls, mesh.wall_cell, mesh.wall_area)
+        outflow = walls @ velocity(conditions.mach, conditions.alpha, conditions.beta).T
+        head_on = np.linalg.norm(walls, axis=1)[:, None] * conditions.mach
+        squares = np.maximum(outflow**2, 1e-6 * head_on**2) / mesh.cell_volume[:, None]
+        return np.sqrt(squares.sum(axis=0)).tolist() if len(mesh.wall_cell) else [np.inf] * len(conditions)
+
     def reconstruct(self) -> None:
         """Fill gradients and sensor."""
         if self.order == 1:

@@ -9,8 +9,16 @@ import numpy as np
 
 @dataclass
 class History:
-    """What one condition did on one level."""
+    """What one condition did on one level.
 
+    Attributes:
+        residual: after each iteration, the first before any; force: [3] likewise.
+        impulsive: residual of the free stream on this level, which no start worth the name exceeds: one from a coarse
+            level that went astray would otherwise pass for decades gained.
+        failure: why the condition broke; done: whether it left because it was at its end.
+    """
+
+    impulsive: float = float("inf")
     residual: list[float] = field(default_factory=list)
     force: list[np.ndarray] = field(default_factory=list)
     failure: str = ""
@@ -21,12 +29,16 @@ class History:
         """Iterations done."""
         return max(len(self.residual) - 1, 0)
 
+    @property
+    def first(self) -> float:
+        """The residual by which its fall is measured."""
+        return max(min(self.residual[0], self.impulsive), 1e-300)
+
     def drop(self) -> float:
         """Decades that the residual has fallen since the first iteration."""
         if not self.residual:
             return 0.0
-        first, last = self.residual[0], self.residual[-1]
-        return float(np.log10(max(first, 1e-300) / max(last, 1e-300)))
+        return float(np.log10(self.first / max(self.residual[-1], 1e-300)))
 
     def gain(self, window: int) -> float:
         """Decades by which the best residual of the last `window` iterations is below the best one before them;

@@ -181,7 +181,7 @@ def march(
         History by condition.
     """
     mach = ensemble.conditions.mach
-    histories = {condition: History() for condition in range(len(mach))}
+    histories = {condition: History(impulsive=norm) for condition, norm in enumerate(ensemble.impulsive_norms())}
     steering = Steering(mach[ensemble.lanes], caution, impulsive)
     freezer = Freezer()
     waiting = deque(range(ensemble.count, len(mach)))

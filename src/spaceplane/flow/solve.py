@@ -215,7 +215,7 @@ def judge(history: History, settings: FlowSettings) -> ConvergenceRecord:
         verdict=verdict,
         residual_drop=drop if np.isfinite(drop) else 0.0,
         iterations=len(residual) - 1,
-        residual_history=np.log10(np.maximum(residual, 1e-300) / max(residual[0], 1e-300)),
+        residual_history=np.log10(np.maximum(residual, 1e-300) / history.first),
         force_history=force,
         window_mean=window.mean(axis=0),
         window_spread=0.5 * np.ptp(window, axis=0),

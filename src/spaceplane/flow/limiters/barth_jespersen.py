@@ -13,4 +13,5 @@ def barth_jespersen(room, step, eps2):
     """Factor on the gradient: min(1, room/step). `room` and `step` >= 0: room to the neighbours' extreme, step to the
     face."""
     real = type(room)
-    return min(real(1), room / (step + real(1e-20)))
+    # Room that is nothing but round-off may be negative, and many times the step.
+    return min(real(1), max(room, real(0)) / (step + real(1e-20)))
