@@ -428,6 +428,16 @@ def test_settings_survive_a_round_trip_through_plain_values():
                 "target_cells": None,
                 "domain": [[-50, -50, -50], [100, 50, 50]],
                 "boxes": [{"lower": [0, -1, -1], "upper": [5, 1, 1], "cell": 0.2}],
+                "frustums": [
+                    {
+                        "start": [0, 0, 0],
+                        "end": [5, 0, 1],
+                        "start_radius": 0,
+                        "end_radius": 2,
+                        "cell": 0.2,
+                        "end_hole": 1,
+                    }
+                ],
                 "fine_parts": ["wing"],
             },
             "flow": {"precision": "double"},
@@ -450,6 +460,9 @@ def test_settings_survive_a_round_trip_through_plain_values():
         ({"mesh": 3}, "mesh"),
         ({"mesh": {"domain": [[0, 0, 0], [1, 1]]}}, r"mesh\.domain.*upper corner"),
         ({"mesh": {"boxes": [{"lower": [0, 0, 0]}]}}, r"mesh\.boxes.*upper"),
+        ({"mesh": {"frustums": [{"start": [0, 0, 0]}]}}, r"mesh\.frustums.*end_radius"),
+        ({"mesh": {"frustums": [{"begin": [0, 0, 0]}]}}, r"mesh\.frustums\.begin"),
+        ({"mesh": {"frustums": 3}}, r"mesh\.frustums = 3"),
         ({"mesh": {"fine_parts": "wing"}}, r"mesh\.fine_parts"),
         ({"mach": ["fast"]}, "mach"),
         ({"mach": [-1.0]}, "mach = -1"),

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from spaceplane import validation
+from spaceplane.aero.exact.conical import taylor_maccoll
 from spaceplane.aero.integrate import integrate
 from spaceplane.flow.solution import FlowConditions
 from spaceplane.mesh.generate import generate
@@ -52,17 +53,50 @@ def test_coarse_m6_has_nearly_the_published_lift():
     assert 0.0118 < drag.computed < 0.02 and not drag.gate
 
 
-def test_finer_walls_for_thin_shock_layers():
-    assert cones.wall_cell(10.0, math.radians(10.0), True) < cones.wall_cell(3.0, math.radians(10.0), True)
-    assert cones.wall_cell(1.5, math.radians(10.0), True) == 1.0 / 80
+@pytest.mark.parametrize("angle_deg", cones.HALF_ANGLES_DEG)
+def test_exact_shocks_of_cones_at_mach_10_lie_in_cells_of_their_own(angle_deg):
+    """Fine: two cells outside and two inside of the exact shock are of the finest size, the walls' of twice it."""
+    mach, angle = 10.0, math.radians(angle_deg)
+    plan = cones.mesh_plan(mach, angle, True)
+    frustums = plan.settings.frustums
+    cell = min(frustum.cell for frustum in frustums)
+    assert 14.0 < cones.layer(mach, angle) / cell < 20.1
+    x = np.linspace(2.0 * cell * plan.stretch, 1.0, 400)
+
+    def at(r: np.ndarray) -> np.ndarray:
+        """Points in the plane y = 0 of the squeezed cone."""
+        return np.stack([x / plan.stretch, np.zeros_like(x), r], axis=1)
+
+    for off in (-2.0, 0.0, 1.9):
+        r = np.maximum(x * math.tan(taylor_maccoll(mach, angle).shock_angle) + off * cell, 0.0)
+        assert any_of(frustums, cell, at(r)).all()
+    wall = at(x * math.tan(angle))
+    assert any_of(frustums, 2.0 * cell, wall).all()
+    assert not any_of(frustums, cell, wall).all()
 
 
-def test_cone_meshes_for_extrapolation_are_alike():
-    """Doubled cells in half as many layers: each size of cell reaches as far from the wall as before."""
-    angle = math.radians(20.0)
-    fine, doubled = (cones.mesh_settings(angle, (1.5, 3.0), 1.0 / 80, twice) for twice in (False, True))
-    assert doubled.wall_cell == 2.0 * fine.wall_cell
-    assert (2 * doubled.wall_layers, 2 * doubled.growth_layers) == (fine.wall_layers, fine.growth_layers)
+def test_cells_of_cones_are_long_where_the_air_is_thin():
+    """At Mach 10 the more, the more slender the cone, and never so long that fewer than 40 lie along it."""
+    plans = [cones.mesh_plan(10.0, math.radians(angle), True) for angle in cones.HALF_ANGLES_DEG]
+    assert [plan.stretch for plan in plans] == [4, 2, 1]
+    assert all(2.0 * plan.stretch * plan.settings.frustums[0].cell <= 1.0 / 40 for plan in plans)
+
+
+def any_of(frustums, cell, points):
+    """[point] whether one of the frustums that ask for cells of at most `cell` holds the point."""
+    return np.any([one.contains(points) for one in frustums if one.cell <= cell], axis=0)
+
+
+def test_quick_cones_take_cells_by_distance_from_the_wall():
+    """Where the shock is far off the fine ones too, one mesh for Mach 1.5 and 3; walls are finer where it is close."""
+    angle = math.radians(10.0)
+    near, far, slow = (
+        cones.mesh_plan(*what) for what in ((10.0, angle, False), (3.0, angle, False), (1.5, angle, True))
+    )
+    assert not any(plan.settings.frustums or plan.stretch != 1.0 for plan in (near, far, slow))
+    assert near.settings.wall_cell < far.settings.wall_cell == 2.0 / 30
+    assert slow == cones.mesh_plan(3.0, angle, True) and slow.settings.wall_cell == 2.0 / 80
+    assert far == cones.mesh_plan(1.5, angle, False) and far.settings.wall_layers > near.settings.wall_layers
 
 
 def test_no_cell_of_the_hb2_mesh_holds_flare_and_base():

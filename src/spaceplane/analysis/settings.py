@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from typing import Any
 
 from spaceplane.aero.conditions import DerivativeSteps
@@ -12,9 +12,10 @@ from spaceplane.aero.increments.settings import VISCOUS, IncrementSettings, requ
 from spaceplane.aero.uncertainty.settings import LOOSEST, MESH, SOURCES, TIGHTEST
 from spaceplane.dynamics.flightpoint import TAEM_MACH, FlightPoint, taem_point
 from spaceplane.dynamics.linearise import FORMS
-from spaceplane.errors import InputError
+from spaceplane.errors import InputError, unknown_name
 from spaceplane.flow.settings import FlowSettings
 from spaceplane.flow.solution import GASES, PERFECT
+from spaceplane.mesh.frustum import RefinementFrustum
 from spaceplane.mesh.settings import MeshSettings, RefinementBox, check_passes
 from spaceplane.plain import override, plain
 from spaceplane.qualities import limits
@@ -30,6 +31,22 @@ def _boxes(name: str, value: Any) -> tuple[RefinementBox, ...]:
         return tuple(RefinementBox(tuple(b["lower"]), tuple(b["upper"]), b["cell"]) for b in value)
     except (TypeError, KeyError) as error:
         raise InputError(f"{name} = {value!r}: a list of boxes, each with lower, upper and cell, is needed") from error
+
+
+def _frustums(name: str, value: Any) -> tuple[RefinementFrustum, ...]:
+    """Refinement frustums from mappings of their fields, m."""
+    known = [f.name for f in fields(RefinementFrustum)]
+    try:
+        found = []
+        for one in value:
+            for key in one:
+                if key not in known:
+                    raise InputError(unknown_name("setting", f"{name}.{key}", [f"{name}.{n}" for n in known]))
+            found.append(RefinementFrustum(**{k: tuple(v) if k in ("start", "end") else v for k, v in one.items()}))
+        return tuple(found)
+    except TypeError as error:
+        wanted = "a list of frustums, each with start, end, start_radius, end_radius and cell"
+        raise InputError(f"{name} = {value!r}: {wanted}, is needed") from error
 
 
 def _parts(name: str, value: Any) -> tuple[str, ...]:
@@ -62,6 +79,7 @@ def _word(name: str, value: Any) -> str:
 
 READERS = {
     "mesh.boxes": _boxes,
+    "mesh.frustums": _frustums,
     "mesh.domain": _corners,
     "mesh.fine_parts": _parts,
     "increments.friction": _word,

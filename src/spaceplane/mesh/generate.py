@@ -17,7 +17,7 @@ from spaceplane.mesh.cutcells import CutCells, cut_cells
 from spaceplane.mesh.grid import Grid, boxes_in_cells, place_grid, refined
 from spaceplane.mesh.mesh import Mesh
 from spaceplane.mesh.settings import MeshSettings
-from spaceplane.mesh.sizing import Sizing, finer_levels, round_edges, split, split_cells
+from spaceplane.mesh.sizing import Sizing, finer_levels, frustum_cells, round_edges, split, split_cells
 from spaceplane.mesh.symmetry import is_symmetric, mirrored_parts
 from spaceplane.mesh.walls import fine_parts, fine_walls, join_coarse_walls, wall_sizes
 from spaceplane.progress import Progress, silent
@@ -167,7 +167,7 @@ def _generate(surface: Surface, settings: MeshSettings, half: bool, sizing: Sizi
     clock = time.perf_counter
     begin = clock()
     grid = place_grid(surface, settings, half)
-    finer = finer_levels(sizing, settings.boxes, grid.cell)
+    finer = finer_levels(sizing, (*settings.boxes, *settings.frustums), grid.cell)
     grid = refined(grid, finer)
     expected = 3.0 * surface.area / grid.wall_cell**2
     if expected > settings.max_cells:
@@ -185,8 +185,11 @@ def _generate(surface: Surface, settings: MeshSettings, half: bool, sizing: Sizi
         raise InputError("domain: the body is larger than the domain")
     fine = fine_walls(octree.ancestors(window, finer), finer, cut, shift, surface, settings)
     layers = (settings.wall_layers, settings.growth_layers)
+    wanted = split_cells(sizing, grid)
+    for level, cells in frustum_cells(settings.frustums, grid).items():
+        wanted[level] = octree.union(wanted[level], cells) if level in wanted else cells
     refined_cells, blocks = octree.refined_levels(
-        window, fine, finer, grid.size, grid.levels, *layers, boxes_in_cells(settings, grid), split_cells(sizing, grid)
+        window, fine, finer, grid.size, grid.levels, *layers, boxes_in_cells(settings, grid), wanted
     )
     expected = octree.count_leaves(refined_cells) * (2 if half else 1)
     if expected > settings.max_cells:

@@ -92,28 +92,28 @@ def refined_levels(
     """
     walls = [cut]
     for _ in range(levels):
-        walls.append(_parents(walls[-1]))
+        walls.append(parents(walls[-1]))
     targets: list[Window] = [Window(cut.origin, np.zeros_like(cut.array))]
     chain, layers = fine, wall_layers
     for level in range(1, levels + 1):
         extent = size * 2 ** (levels - level)
         near = Window(walls[level].origin, np.zeros_like(walls[level].array))
         if level > wall_level:
-            near = _parents(_dilate(chain, layers, extent * 2))
+            near = parents(_dilate(chain, layers, extent * 2))
         for at_level, lower, upper in boxes:
             if at_level < level:
                 low = np.clip(np.floor(np.asarray(lower) / 2**level).astype(np.int64), 0, extent - 1)
                 high = np.clip(np.ceil(np.asarray(upper) / 2**level).astype(np.int64), low + 1, extent)
                 near = _mark(near, low, high)
         if level > wall_level:
-            chain = _union(near, walls[level]) if level == wall_level + 1 else near
+            chain = union(near, walls[level]) if level == wall_level + 1 else near
             layers = growth_layers
-        target = _union(near, wanted[level]) if level in wanted else near
+        target = union(near, wanted[level]) if level in wanted else near
         if (wanted or level <= wall_level + 1) and targets[-1].array.any():
             # neighbours of split cells exist on their level: 2:1
-            target = _union(target, _parents(_dilate(targets[-1], 1, extent * 2)))
+            target = union(target, parents(_dilate(targets[-1], 1, extent * 2)))
         targets.append(target)
-    refined = [cut] + [_union(target, wall) for target, wall in zip(targets[1:], walls[1:], strict=True)]
+    refined = [cut] + [union(target, wall) for target, wall in zip(targets[1:], walls[1:], strict=True)]
     blocks = [
         Window(wall.origin, wall.array & ~_within(target, wall) & _parents_in(targets, level, wall))
         for level, (target, wall) in enumerate(zip(targets, walls, strict=True))
@@ -128,7 +128,7 @@ def refined_levels(
 def ancestors(cut: Window, level: int) -> Window:
     """Cells of `level` with a marked cell of level 0 in them."""
     for _ in range(level):
-        cut = _parents(cut)
+        cut = parents(cut)
     return cut
 
 
@@ -142,7 +142,7 @@ def window_of(places: np.ndarray, extent: np.ndarray) -> Window:
     return Window(low, array)
 
 
-def _union(a: Window, b: Window) -> Window:
+def union(a: Window, b: Window) -> Window:
     """What either window marks."""
     origin = np.minimum(a.origin, b.origin)
     array = np.zeros(np.maximum(a.origin + a.array.shape, b.origin + b.array.shape) - origin, bool)
@@ -195,7 +195,7 @@ def _dilate(window: Window, layers: int, extent: np.ndarray) -> Window:
     return Window(low, grown)
 
 
-def _parents(window: Window) -> Window:
+def parents(window: Window) -> Window:
     """Cells of the next level with a marked child."""
     low = window.origin // 2
     high = -((-(window.origin + window.array.shape)) // 2)

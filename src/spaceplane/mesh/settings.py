@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 
 from spaceplane.errors import InputError
+from spaceplane.mesh.frustum import RefinementFrustum
 
 MOST_PASSES = 3
 """Times that a mesh may be adapted to the flow; each halves some cells."""
@@ -61,6 +62,8 @@ class MeshSettings:
         edge_levels: how many times cells are halved where air connects the two sides of a thin wall round its edge
             within a cell (the wall turns by more than 120 degrees there): one pressure acts on both sides.
         boxes: refinement boxes, for air and walls; mirrored on a body meshed as half and mirror image.
+        frustums: refinement in truncated cones, as in the air between a slender body and its shock, for air and walls;
+            mirrored likewise.
         symmetric: mirror the mesh of the right half; None finds out whether the surface is symmetric about y = 0, False
             meshes both sides even then.
         offset: (x, z) position of the body's lower corner within a wall cell, as a fraction of the cell.
@@ -78,6 +81,7 @@ class MeshSettings:
     fine_edges: bool = False
     edge_levels: int = 0
     boxes: tuple[RefinementBox, ...] = ()
+    frustums: tuple[RefinementFrustum, ...] = ()
     symmetric: bool | None = None
     offset: tuple[float, float] = (0.38196601125, 0.2360679775)
     max_cells: int = 6_000_000

@@ -3,20 +3,24 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
 
 from spaceplane.errors import InputError
+from spaceplane.mesh.frustum import RefinementFrustum
 from spaceplane.mesh.grid import Grid
 from spaceplane.mesh.mesh import Mesh
-from spaceplane.mesh.octree import Window, window_of
+from spaceplane.mesh.octree import Window, parents, union, window_of
 from spaceplane.mesh.settings import RefinementBox
 
 MOST_FINER = 5
 """Levels that a sizing may add below the wall cell of the settings."""
 # Length of a wall's area vector on its wetted area: cos(120 deg / 2).
 SHARP = 0.5
+MOST_PLACES = 400_000_000
+"""Places of the wanted cell in the box round a frustum, at most."""
 
 
 @dataclass(frozen=True)
@@ -100,13 +104,13 @@ def octree_cubes(mesh: Mesh) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     )
 
 
-def finer_levels(sizing: Sizing | None, boxes: tuple[RefinementBox, ...], cell: float) -> int:
-    """How many levels below cells of `cell`, m, a sizing and boxes need.
+def finer_levels(sizing: Sizing | None, regions: Iterable[RefinementBox | RefinementFrustum], cell: float) -> int:
+    """How many levels below cells of `cell`, m, a sizing, boxes and frustums need.
 
     Raises:
         InputError: more than `MOST_FINER`.
     """
-    smallest = min([box.cell for box in boxes], default=cell)
+    smallest = min([region.cell for region in regions], default=cell)
     if sizing is not None and len(sizing.cell):
         smallest = min(smallest, float(np.min(sizing.cell)))
     finer = max(0, math.ceil(math.log2(cell / smallest) - 1e-6))
@@ -133,3 +137,47 @@ def split_cells(sizing: Sizing | None, grid: Grid) -> dict[int, Window]:
             places = np.unique(np.floor(place[here] / 2**above).astype(np.int64), axis=0)
             found[above] = window_of(places, grid.size * 2 ** (grid.levels - above))
     return found
+
+
+def frustum_cells(frustums: Iterable[RefinementFrustum], grid: Grid) -> dict[int, Window]:
+    """By level, the cells that must be refined so that no cell in a frustum is larger than it asks for.
+
+    A grid that ends at y = 0 takes each frustum with its mirror image.
+
+    Raises:
+        InputError: a frustum with too many cells.
+    """
+    found: dict[int, Window] = {}
+    for frustum in frustums:
+        level = math.floor(math.log2(frustum.cell / grid.cell) + 1e-9)
+        if level >= grid.levels:
+            continue
+        for one in (frustum, frustum.mirrored()) if grid.half else (frustum,):
+            window = _inside(one, grid, level)
+            if window is not None:
+                split_here = parents(window)
+                found[level + 1] = union(found[level + 1], split_here) if level + 1 in found else split_here
+    return found
+
+
+def _inside(frustum: RefinementFrustum, grid: Grid, level: int) -> Window | None:
+    """The places of `level` with their centres in the frustum; None where it lies outside the domain."""
+    edge = grid.cell * 2**level
+    low, high = ((corner - grid.corner) / edge for corner in frustum.bounds())
+    low = np.clip(np.floor(low).astype(np.int64), 0, None)
+    high = np.minimum(np.ceil(high).astype(np.int64), grid.size * 2 ** (grid.levels - level))
+    if (high <= low).any():
+        return None
+    places = float(np.prod((high - low).astype(float)))
+    if places > MOST_PLACES:
+        raise InputError(
+            f"frustums: cell {frustum.cell:.6g} m spans the box round it with {places:.3g} cells, "
+            f"at most {MOST_PLACES:.3g} allowed"
+        )
+    x, y, z = (grid.corner[d] + (np.arange(low[d], high[d]) + 0.5) * edge for d in range(3))
+    section = np.stack(np.broadcast_arrays(0.0, y[:, None], z[None, :]), axis=-1)
+    array = np.empty(high - low, bool)
+    for i, station in enumerate(x):  # section by section, for memory
+        section[..., 0] = station
+        array[i] = frustum.contains(section)
+    return Window(low, array)

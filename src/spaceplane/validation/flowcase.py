@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from spaceplane.flow.coarsen import Sequence, sequence
 from spaceplane.flow.compilation import begin
 from spaceplane.flow.settings import FlowSettings
 from spaceplane.flow.solution import FlowConditions, Solution
@@ -12,6 +13,7 @@ from spaceplane.mesh.generate import generate
 from spaceplane.mesh.mesh import Mesh
 from spaceplane.mesh.settings import MeshSettings
 from spaceplane.mesh.sizing import Sizing
+from spaceplane.mesh.stretch import squeezed, stretched
 from spaceplane.validation.cases import Progress
 from spaceplane.vehicle.properties import ReferenceLengths
 from spaceplane.vehicle.surface import Surface
@@ -27,6 +29,7 @@ def solve_body(
     progress: Progress | None = None,
     done: float = 0.0,
     sizing: Sizing | None = None,
+    stretch: float = 1.0,
 ) -> Solution:
     """Mesh the body and solve every condition; default flow settings but for the number of iterations allowed.
 
@@ -37,6 +40,7 @@ def solve_body(
         progress: told when kernels are compiled, which only a first run does.
         done: fraction of the case (0 to 1) that lies behind it.
         sizing: cells wanted smaller than `mesh` makes them.
+        stretch: length of the cells along x on their other edges; `mesh` and `sizing` are of the body squeezed by it.
     """
 
     def say(phase: str, _done: int, _total: int, text: str) -> None:
@@ -45,7 +49,11 @@ def solve_body(
 
     settings = FlowSettings(iterations=ITERATIONS)
     begin(settings, conditions)
-    return solve(generate(surface, mesh, say, sizing), conditions, settings, say)
+    if stretch == 1.0:
+        return solve(generate(surface, mesh, say, sizing), conditions, settings, say)
+    levels = sequence(generate(squeezed(surface, stretch), mesh, say, sizing), settings.coarse_levels)
+    meshes = tuple(stretched(level, stretch) for level in levels.meshes)
+    return solve(Sequence(meshes, levels.parents), conditions, settings, say)
 
 
 def reference_of(

@@ -53,4 +53,5 @@ def coarser(settings: MeshSettings, wall_cell: float, ratio: float = RATIO) -> M
         target_cells=None,
         growth_layers=min(settings.growth_layers, GROWTH_LAYERS),
         boxes=tuple(replace(box, cell=ratio * box.cell) for box in settings.boxes),
+        frustums=tuple(replace(frustum, cell=ratio * frustum.cell) for frustum in settings.frustums),
     )
