@@ -46,6 +46,7 @@ from spaceplane.validation import bodies, cones, sphere
 from spaceplane.validation.flowcase import ITERATIONS, reference_of
 
 CONES, SPHERE = "cones", "sphere"
+STORED = Path("docs/data/uncertainty.json")
 CONDITIONS_SHOWN = 6
 """Of each flight point: base, alpha+, alpha-, mach+, mach- and beta; the turning ones are in the derivatives."""
 CONE_LAYERS = 9
@@ -127,15 +128,21 @@ def body_rows(name: str, body: Body, flows: Path) -> tuple[list[Row], dict]:
 
 
 def sphere_rows(flows: Path) -> list[Row]:
-    """Drag of the sphere's front half, and all of its drag where it is none, on the coarser mesh of the validation."""
+    """Rows of the sphere on both meshes of the validation."""
+    return [row for fine in (False, True) for row in _sphere(flows, fine)]
+
+
+def _sphere(flows: Path, fine: bool) -> list[Row]:
+    """Drag of the front half, and all of the drag where it is none."""
     machs = np.array(sphere.MACHS)
     conditions = FlowConditions(machs, 0.0 * machs, 0.0 * machs)
     reference = reference_of(math.pi, 2.0, (1.0, 0.0, 0.0))
-    usual = sphere.mesh_settings(False)
+    usual = sphere.mesh_settings(fine)
+    cells = round(2.0 / usual.wall_cell)
     pair = []
     for name, mesh in (("mesh", usual), ("companion", coarser(usual, usual.wall_cell))):
         task = Task(bodies.sphere(), mesh, conditions, reference, FlowSettings(iterations=ITERATIONS))
-        pair.append(kept(flows / f"sphere_{name}.nc", task))
+        pair.append(kept(flows / f"sphere_{cells}_{name}.nc", task))
     stated = of_coefficients(*pair, RATIO).sel(part=TOTAL)
     rows = []
     for index, mach in enumerate(sphere.MACHS):
@@ -144,7 +151,7 @@ def sphere_rows(flows: Path) -> list[Row]:
             name, what = "CA_forebody", "C_A forebody"
             exact = sphere_flow(mach, angles=20, last_angle=0.5 * math.pi).front_drag()
         value, error = stated[name][index], stated[f"{name}_error"][index]
-        rows.append(row_of(SPHERE, "coefficient", what, f"Mach {mach:g}", value, error, exact))
+        rows.append(row_of(SPHERE, "coefficient", what, f"Mach {mach:g}, {cells} cells across", value, error, exact))
     return rows
 
 
@@ -244,13 +251,15 @@ def main() -> int:
     """Solve what is missing, compare, print and keep."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--flows", type=Path, default=Path("out/uncertainty"), help="folder of solved flows")
-    parser.add_argument("--out", type=Path, default=Path("docs/data/uncertainty.json"), help="stored result")
+    parser.add_argument("--out", type=Path, help=f"stored result (default {STORED}; with --only nothing is stored)")
     names = (*BODIES, CONES, SPHERE)
-    parser.add_argument("--only", nargs="+", choices=names, default=names, help="these cases alone, nothing is stored")
+    parser.add_argument("--only", nargs="+", choices=names, metavar="CASE", help=f"of {', '.join(names)}")
     options = parser.parse_args()
+    out = options.out or (None if options.only else STORED)
+    names = options.only or names
     rows, meshes = [], []
-    for number, name in enumerate(options.only):
-        print(f"case {number + 1} of {len(options.only)}: {name}", file=sys.stderr, flush=True)
+    for number, name in enumerate(names):
+        print(f"case {number + 1} of {len(names)}: {name}", file=sys.stderr, flush=True)
         if name == CONES:
             rows += cone_rows(options.flows)
         elif name == SPHERE:
@@ -284,8 +293,8 @@ def main() -> int:
         "groups": found,
         "rows": [{k: round(v, 7) if isinstance(v, float) else v for k, v in asdict(row).items()} for row in rows],
     }
-    if set(options.only) == set(names):
-        options.out.write_text(json.dumps(document, indent=1, allow_nan=False) + "\n", encoding="utf-8")
+    if out is not None:
+        out.write_text(json.dumps(document, indent=1, allow_nan=False) + "\n", encoding="utf-8")
     judged = [one for one in found if one["kind"] == "all" or one["case"] in ("held out", "all")]
     return int(any(one["covered"] < LEAST_COVERED or one["median_ratio"] > WIDEST for one in judged))
 
