@@ -121,17 +121,22 @@ def coefficients(
     Returns:
         Dataset with dims (condition, part); `part` holds "total" first and then the parts of the surface. Each of
         COEFFICIENTS and PRESSURES has the attributes units, axes, positive and reference; so has `<name>_spread`
-        (condition) of WITH_SPREAD. Coordinates along `condition`: mach, alpha, beta (rad), reduced rates p_hat, q_hat,
-        r_hat, verdict, reason. A condition that failed has NaN everywhere.
+        (condition) of WITH_SPREAD. The dataset's own attributes are the reference lengths, and [xyz] `wall_reach_m`,
+        the farthest wall from the moment centre along each axis, and `wall_rms_m`, its root mean square by area.
+        Coordinates along `condition`: mach, alpha, beta (rad), reduced rates p_hat, q_hat, r_hat, verdict, reason. A
+        condition that failed has NaN everywhere.
     """
     pieces, cp = _sorted(pieces, cp)
-    force, moment, forebody = _loads(pieces, cp, np.asarray(reference.moment_center, dtype=float))
+    center = np.asarray(reference.moment_center, dtype=float)
+    force, moment, forebody = _loads(pieces, cp, center)
     values = coefficients_of(force, moment, conditions, reference)
     forebody = forebody / reference.area
     values |= {"CA_forebody": forebody, "CA_base": values["CA"] - forebody}
     values["Cp_max"], values["Cp_min"] = _extrema(pieces, cp)
     values |= {f"{name}_spread": value for name, value in spread.items()}
-    return _dataset(conditions, judgement, reference, values, (TOTAL, *pieces.part_names))
+    found = _dataset(conditions, judgement, reference, values, (TOTAL, *pieces.part_names))
+    reach, rms = _arms(pieces.center - center, np.linalg.norm(pieces.area, axis=1))
+    return found.assign_attrs(wall_reach_m=reach.tolist(), wall_rms_m=rms.tolist())
 
 
 def _loads(pieces: WallPieces, cp: np.ndarray, center: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -190,7 +195,7 @@ def _spread(solution: Solution, reference: Reference) -> dict[str, np.ndarray]:
     spread = raw * wetted_area(mesh) / reference.area
     axes = wind_axes(conditions.alpha, conditions.beta)
     size = np.linalg.norm(mesh.piece_area, axis=1)
-    arm = np.sqrt(np.average((mesh.piece_center - np.asarray(reference.moment_center)) ** 2, axis=0, weights=size))
+    _, arm = _arms(mesh.piece_center - np.asarray(reference.moment_center), size)
     side, up = spread[:, 1], spread[:, 2]
     return {
         "CL": np.linalg.norm(spread * axes.lift, axis=1),
@@ -202,6 +207,11 @@ def _spread(solution: Solution, reference: Reference) -> dict[str, np.ndarray]:
         "CA": spread[:, 0],
         "CN": up,
     }
+
+
+def _arms(distance: np.ndarray, size: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """[xyz] largest and root-mean-square distance [piece, xyz] along each axis, of pieces with areas `size` [piece]."""
+    return np.abs(distance).max(axis=0), np.sqrt(np.average(distance**2, axis=0, weights=size))
 
 
 def _wander(record: ConvergenceRecord) -> np.ndarray:

@@ -14,6 +14,7 @@ from spaceplane.aero.derivatives import differentiate
 from spaceplane.aero.increments.add import integrate_with
 from spaceplane.aero.increments.settings import Air
 from spaceplane.aero.uncertainty.accuracy import Accuracy, Refined, at_wall_cell, cells_in_memory, refine
+from spaceplane.aero.uncertainty.arms import arms_of
 from spaceplane.aero.uncertainty.companion import RATIO, Companion, coarser
 from spaceplane.aero.uncertainty.errors import of_coefficients, of_derivatives
 from spaceplane.aero.uncertainty.settings import MESH, TIGHTEST
@@ -191,7 +192,7 @@ def _with_errors(fine: Aerodynamics, coarse: Aerodynamics | None, plan: Conditio
         fine.body,
         of_coefficients(fine.coefficients, companion and companion.coefficients, RATIO),
         runs,
-        of_derivatives(fine.derivatives, slopes, mach, RATIO),
+        of_derivatives(fine.derivatives, slopes, mach, RATIO, arms_of(fine.coefficients)),
         companion,
     )
 

@@ -38,7 +38,6 @@ def run(fine: bool, progress: Progress) -> list[Record]:
         progress: told what runs.
     """
     progress("Mach " + " and ".join(f"{mach:g}" for mach in MEASURED), 0.0)
-    settings = MeshSettings(wall_cell=1.0 / (16 if fine else 10), fine_parts=("fins",), far_field=1.0)
     reference = reference_of(math.pi / 4.0, 1.0, (MOMENT_STATION, 0.0, 0.0))
     # Zero, incidence, pitch rate; the body is its own mirror image top to bottom, so that one side is enough.
     mach = np.repeat(list(MEASURED), 3)
@@ -46,7 +45,7 @@ def run(fine: bool, progress: Progress) -> list[Record]:
     pitch = np.tile([0.0, 0.0, RATE], len(MEASURED))
     streams = FlowConditions(mach, alpha, np.zeros_like(alpha))
     streams = turning(streams, np.stack([0 * pitch, pitch, 0 * pitch], axis=1), reference)
-    solution = solve_body(bodies.basic_finner(), settings, streams, progress)
+    solution = solve_body(bodies.basic_finner(), mesh_settings(fine), streams, progress)
     values = integrate(solution, reference).sel(part="total")
     records = []
     for row, (number, measured) in enumerate(MEASURED.items()):
@@ -73,3 +72,8 @@ def run(fine: bool, progress: Progress) -> list[Record]:
             for name, published in measured.items()
         ]
     return records
+
+
+def mesh_settings(fine: bool) -> MeshSettings:
+    """Mesh of the case, see `run`."""
+    return MeshSettings(wall_cell=1.0 / (16 if fine else 10), fine_parts=("fins",), far_field=1.0)

@@ -33,7 +33,7 @@ def run(fine: bool, progress: Progress) -> list[Record]:
     """
     progress("Mach 0.8395", 0.0)
     conditions = FlowConditions(np.array([MACH]), np.array([ALPHA]), np.zeros(1))
-    solution = solve_body(bodies.m6(), MeshSettings(wall_cell=0.0085 if fine else 0.025), conditions, progress)
+    solution = solve_body(bodies.m6(), mesh_settings(fine), conditions, progress)
     area = bodies.M6_ROOT_CHORD * (1.0 + bodies.M6_TAPER) * bodies.M6_SEMI_SPAN
     values = integrate(solution, reference_of(area, bodies.M6_ROOT_CHORD)).sel(part="total")
     good = solution.records[0].good
@@ -55,3 +55,8 @@ def run(fine: bool, progress: Progress) -> list[Record]:
         )
         for quantity, published, value, band, gate, note in rows
     ]
+
+
+def mesh_settings(fine: bool) -> MeshSettings:
+    """Mesh of the case, see `run`."""
+    return MeshSettings(wall_cell=0.0085 if fine else 0.025)

@@ -44,12 +44,16 @@ def run(fine: bool, progress: Progress) -> list[Record]:
         fine: 48 wall cells per diameter instead of 24, and three meshes of the nose instead of one.
         progress: told what runs.
     """
-    cell = 2.0 / (48 if fine else 24)
     progress(f"Mach {', '.join(f'{mach:g}' for mach in MACHS)}", 0.0)
     zero = np.zeros(len(MACHS))
     conditions = FlowConditions(np.array(MACHS), zero, zero)
-    solution = solve_body(bodies.sphere(), MeshSettings(wall_cell=cell, wall_layers=WALL_LAYERS), conditions, progress)
+    solution = solve_body(bodies.sphere(), mesh_settings(fine), conditions, progress)
     return sphere_records(solution) + sphere_nose.run(CASE, fine, progress)
+
+
+def mesh_settings(fine: bool) -> MeshSettings:
+    """Mesh of the whole sphere, see `run`."""
+    return MeshSettings(wall_cell=2.0 / (48 if fine else 24), wall_layers=WALL_LAYERS)
 
 
 def sphere_records(solution: Solution) -> list[Record]:

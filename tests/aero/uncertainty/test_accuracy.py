@@ -32,7 +32,8 @@ def solved(made, slope=SLOPE):
         variables[name] = (("condition", "part"), np.full((2, 1), exact and exact + slope * cell**ORDER))
         variables[f"{name}_spread"] = ("condition", np.zeros(2))
     along = {name: ("condition", value) for name, value in (("mach", MACH), ("alpha", 0 * MACH), ("beta", 0 * MACH))}
-    return xr.Dataset(variables, {"part": ["total"], **along})
+    body = {"wall_reach_m": [1.0, 0.1, 0.1], "wall_rms_m": [0.5, 0.05, 0.05], "c_ref_m": 1.0, "b_ref_m": 1.0}
+    return xr.Dataset(variables, {"part": ["total"], **along}, body)
 
 
 def test_it_stops_at_the_accuracy_and_the_error_is_below_it():

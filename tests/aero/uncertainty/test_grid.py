@@ -29,12 +29,13 @@ def test_errors_of_half_to_second_order_are_covered_too():
         assert (np.abs(fine - exact) < found).all() and (found < 5.0 * SAFETY * np.abs(fine - exact)).all()
 
 
-def test_forces_are_off_by_no_less_than_the_moments_they_make():
-    fine = np.full((2, 1), 0.3)
-    args = fine, fine + np.array([[0.001], [0.02]]), np.array([2.0]), ["force", "moment"], 2.0
-    force, moment = half_width(*args, {"force": "moment"})[:, 0]
-    assert force == pytest.approx(moment)
-    assert half_width(*args)[0, 0] < 0.1 * moment
+def test_a_group_is_off_by_no_less_than_its_share_of_another_and_only_where_it_has_one():
+    fine = np.full((2, 2), 0.3)
+    args = fine, fine + np.array([[0.001], [0.02]]), np.array([2.0, 2.0]), ["force", "moment"], 2.0
+    force, moment = half_width(*args, {"force": ("moment", np.array([0.25, 0.0]))})
+    assert force[0] == pytest.approx(0.25 * moment[0])
+    np.testing.assert_array_equal(half_width(*args)[0], force[1])
+    assert force[1] < 0.1 * moment[1]
 
 
 def test_the_estimate_falls_with_the_cell():

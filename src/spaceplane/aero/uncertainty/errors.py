@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from spaceplane.aero.integrate import TOTAL, WITH_SPREAD
+from spaceplane.aero.uncertainty.arms import Arms, arms_of, floors
 from spaceplane.aero.uncertainty.grid import half_width
 from spaceplane.aero.uncertainty.settings import ITERATION, MESH
 from spaceplane.plain import finite
@@ -22,8 +23,6 @@ SCALES = {
     "lateral": ("Cl", "Cn"),
 }
 """Coefficients whose errors are of one size: a base or a bow shock does to one what it does not to another."""
-ARMS = {"lift": "pitch", "side": "lateral"}
-"""Forces are off by no less than the moments that they make: moments are on reference lengths, and arms no longer."""
 WITH_ERROR = (*WITH_SPREAD, "CA_forebody", "CA_base")
 """Coefficients that have an error; the solver's final window tells the two shares of CA no more than of CA itself."""
 OF_MESH = "_mesh_error"
@@ -53,7 +52,8 @@ def of_coefficients(data: xr.Dataset, companion: xr.Dataset | None, ratio: float
     if companion is not None:
         groups = [_scale(name) for name in names]
         values = (_totals(d, names) for d in (data, companion))
-        mesh = half_width(*values, data.mach.values, groups, ratio, _arms(groups))
+        mach = data.mach.values
+        mesh = half_width(*values, mach, groups, ratio, floors(groups, arms_of(data), mach))
         for name, error in zip(names, mesh, strict=True):
             head = data[name].attrs | {"long_name": f"uncertainty of {name} by the mesh, 95 %", "positive": "always"}
             changes[f"{name}{OF_MESH}"] = ("condition", error, head)
@@ -64,7 +64,9 @@ def of_coefficients(data: xr.Dataset, companion: xr.Dataset | None, ratio: float
     return data.assign(changes)
 
 
-def of_derivatives(data: xr.Dataset, companion: xr.Dataset | None, mach: np.ndarray, ratio: float) -> xr.Dataset:
+def of_derivatives(
+    data: xr.Dataset, companion: xr.Dataset | None, mach: np.ndarray, ratio: float, arms: Arms
+) -> xr.Dataset:
     """Derivatives with the error of the mesh in their error.
 
     The derivatives on both meshes are compared, not the coefficients' uncertainties differenced: what the mesh does
@@ -76,6 +78,7 @@ def of_derivatives(data: xr.Dataset, companion: xr.Dataset | None, mach: np.ndar
         companion: the same on the coarser mesh; None leaves `data` as it is.
         mach: [point] Mach number.
         ratio: its cell over that of the mesh.
+        arms: of the body.
 
     Returns:
         `data` with `<name>_step_error` (what was `<name>_error`), `<name>_mesh_error` and both together as
@@ -85,7 +88,8 @@ def of_derivatives(data: xr.Dataset, companion: xr.Dataset | None, mach: np.ndar
         return data
     names = [str(name) for name in data.data_vars if f"{name}_status" in data]
     groups = [_scale(name) for name in names]
-    mesh = half_width(_totals(data, names), _totals(companion, names), mach, groups, ratio, _arms(groups))
+    values = (_totals(d, names) for d in (data, companion))
+    mesh = half_width(*values, mach, groups, ratio, floors(groups, arms, mach))
     changes = {}
     for name, error in zip(names, mesh, strict=True):
         step = data[f"{name}_error"]
@@ -132,9 +136,3 @@ def _scale(name: str) -> str:
     """What a coefficient, or a derivative by one quantity, shares the size of its errors with."""
     coefficient, _, quantity = (name, "", "") if name in WITH_ERROR else name.partition("_")
     return next(scale for scale, names in SCALES.items() if coefficient in names) + f" {quantity}"
-
-
-def _arms(groups: list[str]) -> dict[str, str]:
-    """Group of forces to that of the moments that they make, as of ARMS."""
-    scales = {group: group.partition(" ") for group in groups}
-    return {group: f"{ARMS[kind]} {quantity}" for group, (kind, _, quantity) in scales.items() if kind in ARMS}

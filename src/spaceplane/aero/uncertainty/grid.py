@@ -13,7 +13,7 @@ as well and differs less than meshes of equal cells do; with 4 it is nine in ten
 
 One difference may be small by chance while the error is not, so e is not taken alone. It is at least the root mean
 square of the differences at neighbouring Mach numbers, of the same quantity and, with less weight, of those that share
-its scale; and that of a force at least that of the moments that it makes, on arms of at most a reference length.
+its scale; and that of a force at least that of the moments that it makes, see `arms`.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ def half_width(
     mach: np.ndarray,
     group: Sequence[str],
     ratio: float,
-    at_least: Mapping[str, str] | None = None,
+    at_least: Mapping[str, tuple[str, np.ndarray]] | None = None,
 ) -> np.ndarray:
     """Half width of the 95 % interval about values on a mesh, as far as the mesh goes, in the values' own unit.
 
@@ -50,7 +50,7 @@ def half_width(
         mach: [condition] Mach number.
         group: [quantity] name of the scale: quantities of one name, such as forces, are errors of one size.
         ratio: cell of the companion over that of the mesh, above 1.
-        at_least: group to another one whose mean error is the least of its own.
+        at_least: group to another one and the share [condition] of whose mean error is the least of its own.
 
     Returns:
         [quantity, condition]; NaN where either value is.
@@ -68,9 +68,9 @@ def half_width(
     }
     for name, rows in rows_of.items():
         pooled[rows] = (own[rows] + SIBLINGS * shared[name]) / (1.0 + SIBLINGS)
-        least = (at_least or {}).get(name)
-        if least in shared:
-            pooled[rows] = np.maximum(pooled[rows], shared[least])
+        other, share = (at_least or {}).get(name, ("", 0.0))
+        if other in shared:
+            pooled[rows] = np.maximum(pooled[rows], share**2 * shared[other])
     size = np.sqrt(np.where(there, np.maximum(square, pooled), square))
     return SAFETY / (ratio**ORDER - 1.0) * size
 

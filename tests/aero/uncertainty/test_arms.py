@@ -1,0 +1,73 @@
+"""Errors of forces and moments tied by the body's arms: whatever lengths the moments are made dimensionless with."""
+
+import math
+
+import numpy as np
+import pytest
+
+from spaceplane.aero.conditions import DerivativeSteps, plan
+from spaceplane.aero.derivatives import differentiate
+from spaceplane.aero.inclination.solve import local_inclination
+from spaceplane.aero.uncertainty.arms import Arms, arms_of, floors
+from spaceplane.aero.uncertainty.errors import of_coefficients, of_derivatives
+from spaceplane.dynamics.flightpoint import flight_point
+from spaceplane.validation.bodies import cone, sphere
+from spaceplane.vehicle.properties import ReferenceLengths
+
+
+def reference(length, center=0.0):
+    return ReferenceLengths(math.pi / 4.0, length, length, (center, 0.0, 0.0))
+
+
+def solved(body, lengths, conditions):
+    return local_inclination(body, conditions, lengths)
+
+
+def points(*machs):
+    return plan([flight_point(mach, 10_000.0, 4.0) for mach in machs], DerivativeSteps(rate=0.0))
+
+
+def test_arms_are_those_of_the_body_about_the_moment_center():
+    conditions = points(5.0).conditions
+    # on a sphere of radius 1 about its centre the mean of x squared is 1 / 3
+    about = arms_of(solved(sphere(), ReferenceLengths(math.pi, 2.0, 4.0, (1.0, 0.0, 0.0)), conditions))
+    assert about.pitch == pytest.approx(0.5, rel=0.01) and about.lateral == pytest.approx(0.25, rel=0.01)
+    assert about.mean_pitch == pytest.approx(0.5 / math.sqrt(3.0), rel=0.01)
+    # its nose for a moment centre: the mean of x squared is 4 / 3, and the farthest wall 2 away
+    nose = arms_of(solved(sphere(), ReferenceLengths(math.pi, 2.0, 4.0, (0.0, 0.0, 0.0)), conditions))
+    assert nose.pitch == pytest.approx(1.0, rel=0.01) and nose.lateral == pytest.approx(0.5, rel=0.01)
+    assert nose.mean_pitch == pytest.approx(0.5 * math.sqrt(4.0 / 3.0), rel=0.01)
+
+
+def test_lift_takes_the_moments_error_over_the_longest_arm_and_the_moment_lift_s_near_the_speed_of_sound():
+    mach = np.array([0.5, 0.8, 1.2, 2.0])
+    found = floors(["lift alpha", "pitch alpha", "drag alpha", "side beta", "lateral beta"], Arms(5.0, 4.0, 2.0), mach)
+    assert set(found) == {"lift alpha", "pitch alpha", "side beta"}
+    other, share = found["pitch alpha"]
+    assert other == "lift alpha" and share.tolist() == [0.0, 2.0, 2.0, 0.0]
+    for name, wanted, arm in (("lift alpha", "pitch alpha", 5.0), ("side beta", "lateral beta", 4.0)):
+        other, share = found[name]
+        assert other == wanted
+        np.testing.assert_allclose(share, 1.0 / arm)
+
+
+def test_uncertainties_of_forces_do_not_depend_on_the_reference_length():
+    """The same flow with moments on a calibre and on ten: the moment's interval scales, the force's stays."""
+    machs = (3.0, 5.0)
+    plans = points(*machs)
+    widths = {}
+    for length in (1.0, 10.0):
+        # a cone slightly blunter stands for what a coarser mesh makes of it; about a far centre moments are large
+        fine, coarse = (solved(cone(angle), reference(length, 3.0), plans.conditions) for angle in (0.3, 0.31))
+        slopes, rough = (differentiate(data, plans) for data in (fine, coarse))
+        whole = of_coefficients(fine, coarse, 2.0)
+        slopes = of_derivatives(slopes, rough, np.array(machs), 2.0, arms_of(fine))
+        widths[length] = whole, slopes
+    (short, short_slopes), (long, long_slopes) = widths[1.0], widths[10.0]
+    for name, power in (("CL", 0), ("CN", 0), ("CD", 0), ("Cm", 1)):
+        mesh = short[f"{name}_mesh_error"].values
+        assert (mesh > 0.0).all()
+        np.testing.assert_allclose(long[f"{name}_mesh_error"], mesh / 10.0**power, rtol=1e-9)
+    for name, power in (("CL_alpha", 0), ("CY_beta", 0), ("Cm_alpha", 1), ("Cn_beta", 1)):
+        mesh = short_slopes[f"{name}_mesh_error"].values
+        np.testing.assert_allclose(long_slopes[f"{name}_mesh_error"], mesh / 10.0**power, rtol=1e-9)
