@@ -33,7 +33,8 @@ from uncertainty_flows import Task, kept
 from spaceplane import __version__
 from spaceplane.aero.derivatives import Move, control_derivatives, differentiate
 from spaceplane.aero.exact.blunt_sphere import sphere_flow
-from spaceplane.aero.exact.conical import CN_ALPHA_STONE, center_of_pressure, taylor_maccoll
+from spaceplane.aero.exact.conical import center_of_pressure, taylor_maccoll
+from spaceplane.aero.exact.inclined_cone import normal_force_slope
 from spaceplane.aero.integrate import TOTAL
 from spaceplane.aero.uncertainty.arms import arms_of, floors
 from spaceplane.aero.uncertainty.companion import RATIO, coarser
@@ -191,7 +192,7 @@ def _cone(flows: Path, angle: float, machs: list[float], cell: float) -> list[Ro
         front, error = float(stated.CA_forebody[3 * i]), float(stated.CA_forebody_error[3 * i])
         exact = taylor_maccoll(number, angle).surface_cp
         rows.append(row_of(CONES, "coefficient", "C_A forebody", where, front, error, exact))
-        slope = CN_ALPHA_STONE[number, round(math.degrees(angle), 6)]
+        slope = normal_force_slope(number, angle)
         moment = -slope * center_of_pressure(angle)
         for name, row, width, true in zip(names, fine, widths, (slope, -slope, moment, -moment), strict=True):
             rows.append(row_of(CONES, "derivative", name, where, row[i], width[i], true))

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
-from spaceplane.aero.exact.conical import CN_ALPHA_STONE, center_of_pressure, taylor_maccoll
+from spaceplane.aero.exact.conical import center_of_pressure, taylor_maccoll
+from spaceplane.aero.exact.inclined_cone import normal_force_slope
 from spaceplane.aero.integrate import integrate
 from spaceplane.flow.solution import FlowConditions, Solution
 from spaceplane.mesh.frustum import RefinementFrustum
@@ -39,7 +40,7 @@ TAIL = 0.05
 """Length by which the cone goes on behind the metre that is measured, m: the exact cone has no base, and the cell that
 holds the rim of one has a pressure between those of cone and base."""
 EXACT = "Taylor and Maccoll (1933), solved here"
-STONE = "Stone (1948), as tabulated by Kopal (1947) and Sims (1964)"
+STONE = "Stone (1948), solved here; the same to four digits as tabulated by Kopal (1947) and Sims (1964)"
 SUBSONIC_NOTE = (
     "Mach 1.5, half angle 30 deg: the flow on the cone is subsonic (surface Mach number 0.81), so the base of a finite "
     "cone acts upstream and the flow is not conical; the exact value belongs to an infinite cone. Shown, not judged."
@@ -196,7 +197,7 @@ def _of_one(mach: float, half_angle: float, computed: dict[str, float]) -> list[
     """Rows of one cone at one Mach number."""
     angle_deg = math.degrees(half_angle)
     exact = taylor_maccoll(mach, half_angle)
-    slope = CN_ALPHA_STONE[mach, round(angle_deg, 6)]
+    slope = normal_force_slope(mach, half_angle)
     moment = -slope * center_of_pressure(half_angle)
     supersonic = exact.surface_mach > 1.0
     published = {"surface Cp": exact.surface_cp, "C_N_alpha": slope, "C_m_alpha": moment}

@@ -4,7 +4,8 @@ import math
 
 import pytest
 
-from spaceplane.aero.exact.conical import CN_ALPHA_STONE, center_of_pressure
+from spaceplane.aero.exact.conical import center_of_pressure
+from spaceplane.aero.exact.inclined_cone import normal_force_slope
 from spaceplane.aero.flow_case import run_flow, run_to_accuracy
 from spaceplane.aero.uncertainty.accuracy import Accuracy
 from spaceplane.flow.settings import FlowSettings
@@ -16,7 +17,7 @@ HALF_ANGLE = math.radians(20.0)
 REFERENCE = ReferenceLengths(math.pi * math.tan(HALF_ANGLE) ** 2, 1.0, 1.0, (0.0, 0.0, 0.0))
 ALPHA = math.radians(2.0)
 CONDITIONS = [3.0], [ALPHA], [0.0, ALPHA]
-SLOPE = CN_ALPHA_STONE[3.0, 20.0]
+SLOPE = normal_force_slope(3.0, math.radians(20.0))
 
 
 def mesh(cell):

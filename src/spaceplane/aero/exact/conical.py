@@ -1,4 +1,4 @@
-"""Exact supersonic flow past a circular cone at zero incidence, and the published first-order normal force.
+"""Exact supersonic flow past a circular cone at zero incidence.
 
 Taylor and Maccoll, "The air pressure on a cone moving at high speeds", Proc. R. Soc. A 139 (1933);
 equations numbered as in Anderson, Modern Compressible Flow, 3rd ed., chapter 10.
@@ -16,20 +16,6 @@ from scipy.optimize import brentq, minimize_scalar
 
 from spaceplane.aero.exact.oblique import behind
 from spaceplane.errors import InputError
-
-CN_ALPHA_STONE = {
-    (1.5, 10.0): 1.8282,
-    (1.5, 20.0): 1.6057,
-    (1.5, 30.0): 1.3821,
-    (3.0, 10.0): 1.8203,
-    (3.0, 20.0): 1.6860,
-    (3.0, 30.0): 1.4497,
-    (10.0, 10.0): 1.9217,
-    (10.0, 20.0): 1.7782,
-    (10.0, 30.0): 1.5124,
-}
-"""(Mach, half angle in deg) -> C_N_alpha per rad on the base area, gamma 1.4: Stone's first-order theory
-(J. Math. Phys. 27, 1948), as tabulated by Kopal (MIT Tech. Rep. 3, 1947) and Sims (NASA SP-3007, 1964)."""
 
 
 @dataclass(frozen=True)
