@@ -63,16 +63,16 @@ def solve(
 
     job = _Job(levels, topologies, conditions, settings, say)
     boldest = BOLDEST[conditions.gas]
-    caution = Caution(min(settings.cfl_start, boldest), min(settings.cfl_max, boldest))
+    first = Caution(min(settings.cfl_start, boldest), min(settings.cfl_max, boldest))
+    second = Caution(min(5.0, settings.cfl_start), min(25.0, settings.cfl_max, boldest), 1.2, 0.25)
     # Slow flows wait with a lane of their own while others share one: they begin first.
     for which in batches(np.argsort(conditions.mach, kind="stable")):
-        job.run(which, caution, seconds)
+        job.run(which, first, seconds)
     retry = np.array([c for c in range(len(conditions)) if job.worth_retry(c)], dtype=int)
     if len(retry):
         say("retry", 0, len(retry), f"{len(retry)} conditions once more, carefully")
         for which in batches(retry):
-            careful = Caution(min(5.0, settings.cfl_start), min(25.0, settings.cfl_max, boldest), 1.2, 0.25)
-            job.run(which, careful, seconds)
+            job.run(which, second, seconds)
     records = tuple(judge(job.histories[c], settings) for c in range(len(conditions)))
     seconds["total"] = time.perf_counter() - began
     warnings = [f"condition {c}: {r.verdict}: {r.reason}" for c, r in enumerate(records) if not r.good]
