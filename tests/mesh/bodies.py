@@ -47,10 +47,22 @@ def cone(radius: float = 1.0, length: float = 3.0) -> Surface:
 
 def diamond_wing(chord: float = 5.0, span: float = 6.0, thickness: float = 0.4) -> Surface:
     """Wing of diamond section with its leading edge on x = 0."""
-    section = [(0.0, 0.0), (chord / 2, -thickness / 2), (chord, 0.0), (chord / 2, thickness / 2)]
+    return wing([(0.0, 0.0), (chord / 2, -thickness / 2), (chord, 0.0), (chord / 2, thickness / 2)], span)
+
+
+def flat_plate(chord: float = 5.0, span: float = 6.0, thickness: float = 0.4, bevel: float = 1.0) -> Surface:
+    """Plate with edges sharpened over a length of `bevel` and its leading edge on x = 0."""
+    x, z = (bevel, chord - bevel), thickness / 2
+    return wing([(0.0, 0.0), (x[0], -z), (x[1], -z), (chord, 0.0), (x[1], z), (x[0], z)], span)
+
+
+def wing(section: list[tuple[float, float]], span: float) -> Surface:
+    """Straight wing of a convex section [(x, z), ...]."""
+    n = len(section)
     points = np.array([(x, y, z) for y in (-span / 2, span / 2) for x, z in section])
-    sides = [t for n in range(4) for t in ((n, 4 + n, 4 + (n + 1) % 4), (n, 4 + (n + 1) % 4, (n + 1) % 4))]
-    ends = [(0, 1, 2), (0, 2, 3), (4, 6, 5), (4, 7, 6)]
+    after = [(k + 1) % n for k in range(n)]
+    sides = [t for k in range(n) for t in ((k, n + k, n + after[k]), (k, n + after[k], after[k]))]
+    ends = [t for k in range(1, n - 1) for t in ((0, k, k + 1), (n, n + k + 1, n + k))]
     body = trimesh.Trimesh(points, sides + ends, process=False)
     body.fix_normals()
     return from_trimesh(body)

@@ -10,6 +10,7 @@ import numpy as np
 from spaceplane.errors import InputError
 from spaceplane.mesh import regions as rg
 from spaceplane.mesh import volumes as vol
+from spaceplane.mesh.coplanar import beside_planes
 from spaceplane.mesh.subdivide import Subdivision, subdivide
 from spaceplane.mesh.unionfind import bucket
 
@@ -81,7 +82,8 @@ def cut_cells(
         InputError: the surface is not closed, or so folded that inside and outside cannot be told apart.
     """
     clock = [time.perf_counter()]
-    surface = subdivide(points, triangles, None if right_of is None else float(right_of))
+    mirror = None if right_of is None else float(right_of)
+    surface = subdivide(beside_planes(points, triangles, mirror), triangles, mirror)
     clock.append(time.perf_counter())
     if right_of is not None:
         surface = _right_crossings(surface, right_of)
