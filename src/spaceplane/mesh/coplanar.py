@@ -21,7 +21,7 @@ def beside_planes(points: np.ndarray, triangles: np.ndarray, mirror: float | Non
     Args:
         points: [vertex, xyz] in wall cells; grid planes lie at integers.
         triangles: [triangle, 3] vertex indices, counter-clockwise seen from the air.
-        mirror: y of a plane of symmetry, in which everything stays.
+        mirror: y of a plane of symmetry (in wall cells, a number), in which everything stays.
     """
     close = CLOSE * np.spacing(np.abs(points).max(initial=1.0))
     nearest = np.round(points)
