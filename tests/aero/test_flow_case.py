@@ -8,10 +8,12 @@ import numpy as np
 import pytest
 
 from spaceplane.aero import flow_case
-from spaceplane.aero.flow_case import records, run_flow
+from spaceplane.aero.flow_case import run_flow
+from spaceplane.aero.free_streams import FreeStreams
 from spaceplane.aero.increments.friction_laws import LAMINAR, local_friction
 from spaceplane.aero.increments.settings import IncrementSettings
 from spaceplane.aero.integrate import integrate
+from spaceplane.aero.records import records
 from spaceplane.environment.atmosphere import sutherland_viscosity, us1976
 from spaceplane.errors import InputError
 from spaceplane.flow.settings import FlowSettings
@@ -28,11 +30,12 @@ HALF_ANGLE = math.radians(20.0)
 REFERENCE = ReferenceLengths(math.pi * math.tan(HALF_ANGLE) ** 2, 1.0, 1.0, (0.0, 0.0, 0.0))
 MESH = MeshSettings(wall_cell=0.05, far_field=1.0)
 ALPHA = math.radians(2.0)
+ANGLES = [0.0, ALPHA], [0.0, ALPHA]
 
 
 @pytest.fixture(scope="module")
 def case():
-    return run_flow(cone(HALF_ANGLE), [3.0], [0.0, ALPHA], [0.0, ALPHA], REFERENCE, MESH, FlowSettings())
+    return run_flow(cone(HALF_ANGLE), FreeStreams([3.0], *ANGLES), REFERENCE, MESH, FlowSettings())
 
 
 def test_records_have_the_documented_keys_for_every_combination(case):
@@ -62,7 +65,8 @@ def test_a_cone_meets_the_exact_pressure_drag_and_pitch_equals_yaw(case):
 def test_a_cone_that_pitches_about_its_apex_resists():
     """Wall that moves into the air is pressed back, and q c/2V is what the record says."""
     body, q = cone(HALF_ANGLE), 0.06
-    (turning,) = run_flow(body, [3.0], [0.0], [0.0], REFERENCE, MESH, FlowSettings(), rates=(0.0, q, 0.0)).records
+    streams = FreeStreams([3.0], rates=(0.0, q, 0.0))
+    (turning,) = run_flow(body, streams, REFERENCE, MESH, FlowSettings()).records
     assert turning["q_hat"] == pytest.approx(q / (2 * 3.0))
     # Strips that each take the cone's slope at their own incidence q x/V: 17 % short of the flow, on finer cells too.
     strips = -0.5 * 1.686 * q / 3.0 / math.cos(HALF_ANGLE) ** 2
@@ -75,11 +79,12 @@ def test_increments_of_a_cone_are_listed_by_source(monkeypatch, case):
     """Laminar friction of the 20 deg cone by hand: 2/sqrt(3) times that of a plate of its slant length, plus edges."""
     monkeypatch.setattr(flow_case, "solve_adapted", lambda *_: case.solution)
     increments = IncrementSettings(friction="laminar", base="correlation")
-    args = [3.0], [0.0, ALPHA], [0.0, ALPHA], REFERENCE, MESH, FlowSettings()
+    streams = FreeStreams([3.0], *ANGLES, increments=increments)
     with pytest.raises(InputError, match="friction = 'laminar': needs the altitude"):
-        run_flow(cone(HALF_ANGLE), *args, increments=increments)
+        run_flow(cone(HALF_ANGLE), streams, REFERENCE, MESH, FlowSettings())
     ambient = us1976(25_000.0)
-    found = run_flow(cone(HALF_ANGLE), *args, increments=increments, ambient=ambient).records
+    streams = replace(streams, ambient=ambient)
+    found = run_flow(cone(HALF_ANGLE), streams, REFERENCE, MESH, FlowSettings()).records
     assert set(found[0]) == KEYS | {"by_source"}
     for record, plain in zip(found, case.records, strict=True):
         assert record["by_source"]["inviscid"]["CD"] == pytest.approx(plain["CD"])
@@ -118,4 +123,4 @@ def test_bad_conditions_are_refused_before_meshing(monkeypatch):
     monkeypatch.setattr(flow_case, "solve_adapted", lambda *_: pytest.fail("meshed"))
     for machs, alphas, message in (([0.0], [0.0], "mach"), ([2.0], [math.nan], "alpha"), ([], [0.0], "at least one")):
         with pytest.raises(InputError, match=message):
-            run_flow(cone(HALF_ANGLE), machs, alphas, [0.0], REFERENCE, MESH, FlowSettings())
+            run_flow(cone(HALF_ANGLE), FreeStreams(machs, alphas), REFERENCE, MESH, FlowSettings())

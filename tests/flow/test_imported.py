@@ -9,6 +9,7 @@ import pytest
 
 from mesh import body_fitted
 from spaceplane.aero.flow_case import run_on_mesh
+from spaceplane.aero.free_streams import FreeStreams
 from spaceplane.aero.integrate import integrate, wetted_area
 from spaceplane.errors import InputError
 from spaceplane.flow.coarsen import sequence
@@ -108,7 +109,7 @@ def test_a_free_stream_through_the_plane_of_symmetry_is_refused(tmp_path):
     mesh = cone(tmp_path)
     for alpha, beta in ((0.05, 0.0), (0.0, 0.05)):
         with pytest.raises(InputError, match="goes through 384 of 768 faces of symmetry"):
-            run_on_mesh(mesh, [2.0], [alpha], [beta], REFERENCE, FlowSettings())
+            run_on_mesh(mesh, FreeStreams([2.0], [alpha], [beta]), REFERENCE, FlowSettings())
 
 
 def half_sphere_elements(side: int = 12, radial: int = 24) -> Elements:
@@ -146,7 +147,7 @@ def test_prisms_converge():
     prisms = body_fitted.marked(elements.points, {"wedge": cells}, half_sphere_marker)
     mesh, _ = build(prisms, {"symmetry": "symmetry", "sphere": "wall", "farfield": "far"})
     half = ReferenceLengths(np.pi / 2, 2.0, 2.0, (0.0, 0.0, 0.0))
-    case = run_on_mesh(mesh, [0.8, 1.5], [0.0], [0.0], half, FlowSettings())
+    case = run_on_mesh(mesh, FreeStreams([0.8, 1.5]), half, FlowSettings())
     for record in case.records:
         assert record["converged"] and record["residual_drop"] > 2.0
         assert abs(record["CL"]) < 0.06  # the diagonals have a sense of turning
@@ -162,7 +163,7 @@ def test_half_a_sphere_is_as_the_whole_from_mach_03_to_10(tmp_path):
     assert 2 * half.cell_volume.sum() == pytest.approx(whole.cell_volume.sum(), rel=1e-3)
     mach = [0.3, 0.8, 1.5, 3.0, 5.0, 10.0]
     cases = [
-        run_on_mesh(mesh, mach, [0.0], [0.0], ReferenceLengths(area, 2.0, 2.0, (0.0, 0.0, 0.0)), FlowSettings())
+        run_on_mesh(mesh, FreeStreams(mach), ReferenceLengths(area, 2.0, 2.0, (0.0, 0.0, 0.0)), FlowSettings())
         for mesh, area in ((half, np.pi / 2), (whole, np.pi))
     ]
     assert len(cases[0].solution.statistics["level_cells"]) > 1

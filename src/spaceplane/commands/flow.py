@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING
 
 import typer
 
+from spaceplane.commands import flow_options as opt
 from spaceplane.commands import options
 from spaceplane.commands.arguments import (
     angles,
@@ -27,7 +28,9 @@ from spaceplane.files import renamed_when_done
 
 if TYPE_CHECKING:
     from spaceplane.aero.flow_case import FlowCase
+    from spaceplane.aero.free_streams import FreeStreams
     from spaceplane.environment.atmosphere import Ambient
+    from spaceplane.flow.settings import FlowSettings
     from spaceplane.mesh.imported import Imported
     from spaceplane.vehicle.properties import ReferenceLengths
     from spaceplane.vehicle.surface import Surface
@@ -40,61 +43,35 @@ EXAMPLE = (
 )
 
 
+@dataclass(frozen=True)
+class Files:
+    """Where results go; None for nowhere."""
+
+    json: Path | None
+    vtu: Path | None
+    vtp: Path | None
+
+
 def flow(
-    body: Annotated[
-        Path | None, typer.Argument(metavar="[BODY.stl]", help="Watertight body, metres; x aft, y right, z up.")
-    ] = None,
+    body: opt.Body = None,
     *,
-    mach: Annotated[str, typer.Option("--mach", metavar="M[,M...]", help="Mach numbers.")],
-    area: Annotated[str, typer.Option("--area", metavar="M2", help="Reference area.")],
-    length: Annotated[str, typer.Option("--length", metavar="M", help="Reference length of the pitching moment.")],
-    span: Annotated[str, typer.Option("--span", metavar="M", help="Reference length of rolling and yawing moment.")],
-    moment_center: Annotated[
-        str, typer.Option("--moment-center", metavar="x,y,z", help="Moment reference point, metres.")
-    ],
-    alpha: Annotated[str, typer.Option("--alpha", metavar="DEG[,DEG...]", help="Angles of attack, degrees.")] = "0",
-    beta: Annotated[
-        str, typer.Option("--beta", metavar="DEG[,DEG...]", help="Sideslip, degrees, wind from the right positive.")
-    ] = "0",
-    method: Annotated[
-        str,
-        typer.Option(
-            "--method",
-            metavar="NAME",
-            help="euler, or local inclination on the body's triangles (no mesh, from Mach 2): newtonian-expansion, "
-            "newtonian, tangent, tangent-cone, tangent-wedge.",
-        ),
-    ] = EULER,
-    rates: Annotated[
-        str,
-        typer.Option("--rates", metavar="p,q,r", help="Steady roll, pitch and yaw rate about the moment point, rad/s."),
-    ] = "0,0,0",
+    mach: opt.Mach,
+    area: opt.Area,
+    length: opt.Length,
+    span: opt.Span,
+    moment_center: opt.MomentCenter,
+    alpha: opt.Alpha = "0",
+    beta: opt.Beta = "0",
+    method: opt.Method = EULER,
+    rates: opt.Rates = "0,0,0",
     cell: options.Cell = None,
     cells: options.Cells = None,
     adapt: options.Adapt = "0",
-    domain: Annotated[
-        str | None,
-        typer.Option("--domain", metavar="x,y,z,x,y,z", help="Lower and upper corner of the air to mesh, metres."),
-    ] = None,
-    mesh_file: Annotated[
-        Path | None,
-        typer.Option(
-            "--mesh",
-            metavar="FILE",
-            help="Body-fitted mesh (.su2 or .msh) instead of BODY.stl, metres; x aft, y right, z up. Coefficients are "
-            "those of the walls in it: of half a body where it holds half.",
-        ),
-    ] = None,
-    wall: Annotated[
-        str | None, typer.Option("--wall", metavar="NAME[,NAME...]", help="Markers of --mesh that are walls.")
-    ] = None,
-    far: Annotated[
-        str | None, typer.Option("--far", metavar="NAME[,NAME...]", help="Markers of --mesh that are far field.")
-    ] = None,
-    symmetry: Annotated[
-        str | None,
-        typer.Option("--symmetry", metavar="NAME[,NAME...]", help="Markers of --mesh that are planes of symmetry."),
-    ] = None,
+    domain: opt.Domain = None,
+    mesh_file: opt.MeshFile = None,
+    wall: opt.Wall = None,
+    far: opt.Far = None,
+    symmetry: opt.Symmetry = None,
     uncertainty: options.Uncertainty = None,
     accuracy: options.AccuracyText = None,
     precision: options.Precision = "fp32",
@@ -103,15 +80,11 @@ def flow(
     wall_temperature: options.WallTemperature = None,
     emissivity: options.Emissivity = None,
     transition_reynolds: options.TransitionReynolds = None,
-    altitude: Annotated[
-        str | None, typer.Option("--altitude", metavar="M", help="Altitude of the air, for friction, rates and --gas.")
-    ] = None,
+    altitude: opt.Altitude = None,
     gas: options.Gas = PERFECT,
     json_file: options.JsonFile = None,
-    vtu: Annotated[Path | None, typer.Option("--vtu", metavar="FILE", help="Write the flow for ParaView.")] = None,
-    vtp: Annotated[
-        Path | None, typer.Option("--vtp", metavar="FILE", help="Write the wall with its pressure for ParaView.")
-    ] = None,
+    vtu: opt.Vtu = None,
+    vtp: opt.Vtp = None,
 ) -> int:
     """Inviscid flow about a body: every Mach number with every angle, all on one mesh in one run.
 
@@ -120,13 +93,9 @@ def flow(
 
     Exit code 0 when every condition converged (and the accuracy asked for was reached), 1 when not, 2 for bad input.
     """
-    machs, alphas, betas = mach_numbers(mach), angles("--alpha", alpha), angles("--beta", beta)
+    grid = mach_numbers(mach), angles("--alpha", alpha), angles("--beta", beta)
     turning = numbers("--rates", rates, "rad/s", 3)
-    lengths = {
-        "area": positive("--area", area, "m2"),
-        "chord": positive("--length", length, "m"),
-        "span": positive("--span", span, "m"),
-    }
+    sizes = positive("--area", area, "m2"), positive("--length", length, "m"), positive("--span", span, "m")
     center = tuple(numbers("--moment-center", moment_center, "m", 3))
     solver_precision = options.precision(precision)
     increments = options.increment_settings(friction, base, wall_temperature, emissivity, transition_reynolds)
@@ -143,12 +112,10 @@ def flow(
     asked = options.accuracy(accuracy, cell, cells, uncertainty)
     stated = options.uncertainty("iteration" if uncertainty is None else uncertainty)
     chosen = {role: list_of_names(f"--{role}", text) for role, text in roles.items()}
-    writable_file(json_file, "--json")
-    writable_file(vtu, "--vtu", (".vtu",))
-    writable_file(vtp, "--vtp", (".vtp",))
+    files = _files(json_file, vtu, vtp)
     from spaceplane.vehicle.properties import ReferenceLengths
 
-    reference = ReferenceLengths(**lengths, moment_center=center)
+    reference = ReferenceLengths(*sizes, center)
     if method != EULER:
         given = {**mesh_options, "--vtu": vtu, "--vtp": vtp}
         given["--rates"] = rates if any(turning) else None
@@ -157,56 +124,63 @@ def flow(
         given["--gas"] = gas if gas != PERFECT else None
         given["--precision"] = precision if solver_precision != "single" else None
         _refuse_options(given, f"allowed with --method {EULER} only")
-        return _inclination(body, method, (machs, alphas, betas), reference, json_file)
-    from spaceplane.flow.settings import FlowSettings
+        return _inclination(body, method, grid, reference, json_file)
     from spaceplane.mesh.settings import MeshSettings
 
     corners = None if domain is None else numbers("--domain", domain, "m", 6)
     default = MeshSettings(target_cells=200_000, domain=corners and (tuple(corners[:3]), tuple(corners[3:])))
     mesh = options.mesh_settings(cell, cells, default)
-    settings = replace(FlowSettings(), precision=solver_precision)
-    on_sound = tuple(rate / ambient.speed_of_sound for rate in turning)
     passes = options.adapt_passes(adapt, mesh)
     if passes:
         _refuse_options({"--accuracy": accuracy}, f"not allowed with --adapt {passes}: it refines the whole mesh")
-    extra = {"rates": on_sound, "increments": increments, "ambient": ambient, "gas": gas}
-    imported: Imported | None = None
-    if mesh_file is None:
-        from spaceplane.vehicle.stl import read_stl
+    # The numerical stack is loaded after all that can be refused without it.
+    from spaceplane.aero.free_streams import FreeStreams
+    from spaceplane.flow.settings import FlowSettings
 
-        surface = read_stl(body)
-        args = surface, machs, alphas, betas, reference, mesh, settings
-        if asked is not None:
-            return _to_accuracy(asked, cells, args, extra, json_file, vtu, vtp)
-        from spaceplane.aero.flow_case import run_flow  # the numerical stack: after all that can be refused without it
+    settings = FlowSettings(precision=solver_precision)
+    on_sound = tuple(rate / ambient.speed_of_sound for rate in turning)
+    streams = FreeStreams(*grid, on_sound, increments, ambient, gas)
+    if mesh_file is not None:
+        return _on_mesh(mesh_file, chosen, streams, reference, settings, files)
+    from spaceplane.vehicle.stl import read_stl
 
-        with progress_bar((2 if stated == "mesh" else 1) + passes) as tell:
-            tell("mesh", 0, 1, "")
-            case = run_flow(*args, tell, **extra, uncertainty=stated, adapt=passes)
-    else:
-        from spaceplane.mesh.imported import read_mesh
-
-        imported = read_mesh(mesh_file, chosen)
-        surface = imported.surface
-        typer.echo(_roles(imported), err=True)
-        from spaceplane.aero.flow_case import run_on_mesh
-
-        with progress_bar() as tell:
-            case = run_on_mesh(imported.mesh, machs, alphas, betas, reference, settings, tell, **extra)
-    _write(case, surface, imported, vtu, vtp)
-    return _tell(case, json_file)
+    args = read_stl(body), streams, reference, mesh, settings
+    if asked is not None:
+        return _to_accuracy(asked, cells, args, files)
+    return _on_body(args, stated, passes, files)
 
 
-def _to_accuracy(
-    asked: float,
-    cells: str | None,
-    args: tuple,
-    extra: dict,
-    json_file: Path | None,
-    vtu: Path | None,
-    vtp: Path | None,
+def _on_body(args: tuple, uncertainty: str, passes: int, files: Files) -> int:
+    """Mesh, solve, write and tell what was found; return the exit code. `args` begin those of `run_flow`."""
+    from spaceplane.aero.flow_case import run_flow
+
+    with progress_bar((2 if uncertainty == "mesh" else 1) + passes) as tell:
+        tell("mesh", 0, 1, "")
+        case = run_flow(*args, tell, uncertainty, passes)
+    return _done(case, args[0], None, files)
+
+
+def _on_mesh(
+    path: Path,
+    roles: dict[str, list[str] | None],
+    streams: FreeStreams,
+    reference: ReferenceLengths,
+    settings: FlowSettings,
+    files: Files,
 ) -> int:
-    """Refine until the accuracy is reached, write and tell what was; return the exit code."""
+    """Solve on the mesh in a file, whose markers have these `roles`; otherwise as `_on_body`."""
+    from spaceplane.aero.flow_case import run_on_mesh
+    from spaceplane.mesh.imported import read_mesh
+
+    imported = read_mesh(path, roles)
+    typer.echo(_roles(imported), err=True)
+    with progress_bar() as tell:
+        case = run_on_mesh(imported.mesh, streams, reference, settings, tell)
+    return _done(case, imported.surface, imported, files)
+
+
+def _to_accuracy(asked: float, cells: str | None, args: tuple, files: Files) -> int:
+    """Refine until the accuracy is reached; otherwise as `_on_body`."""
     from spaceplane.aero.flow_case import run_to_accuracy
     from spaceplane.aero.uncertainty.accuracy import Accuracy, Trial, cells_in_memory
     from spaceplane.report.summary import accuracy_line, trial_line
@@ -217,27 +191,47 @@ def _to_accuracy(
         typer.echo(trial_line(trial), err=True)
 
     with progress_bar(LIKELY_MESHES) as tell:
-        case, found = run_to_accuracy(*args, wanted, tell, **extra, tell=say)
-    _write(case, args[0], None, vtu, vtp)
-    code = _tell(case, json_file)
+        case, found = run_to_accuracy(*args, wanted, tell, say)
+    code = _done(case, args[0], None, files)
     typer.echo(accuracy_line(wanted, found), err=True)
     return code if found.met else 1
 
 
-def _tell(case: FlowCase, json_file: Path | None) -> int:
-    """Write the records, print them with what is wrong, and return the exit code."""
-    write_json(case.records, json_file)
+def _done(case: FlowCase, surface: Surface, imported: Imported | None, files: Files) -> int:
+    """Write the flow and the records, print them with what is wrong, and return the exit code."""
+    from spaceplane.flow import export
+
+    if files.vtu is not None:
+        with renamed_when_done(files.vtu) as partial:
+            export.write_vtu(case.solution, partial, elements=imported and imported.elements)
+    if files.vtp is not None:
+        with renamed_when_done(files.vtp) as partial:
+            export.write_vtp(surface, case.solution, partial)
     for warning in case.mesh.record.get("warnings") or ():
         typer.echo(f"warning: {warning}", err=True)
-    if str(json_file) != "-":
-        from spaceplane.report.summary import print_flow
-
-        print_flow(case.records)
+    _print(case.records, files.json)
     bad = [r for r in case.records if not r["converged"]]
     for r in bad:
         where = f"Mach {r['mach']:g}, alpha {r['alpha_deg']:g} deg, beta {r['beta_deg']:g} deg"
         typer.echo(f"not good: {where}: {r['verdict']}: {r['reason']}", err=True)
     return 1 if bad else 0
+
+
+def _print(records: list[dict], json_file: Path | None) -> None:
+    """Write the records as JSON, and print them where that is not what goes to standard output."""
+    write_json(records, json_file)
+    if str(json_file) != "-":
+        from spaceplane.report.summary import print_flow
+
+        print_flow(records)
+
+
+def _files(json_file: Path | None, vtu: Path | None, vtp: Path | None) -> Files:
+    """Where results go, refused where nothing can be written."""
+    writable_file(json_file, "--json")
+    writable_file(vtu, "--vtu", (".vtu",))
+    writable_file(vtp, "--vtp", (".vtp",))
+    return Files(json_file, vtu, vtp)
 
 
 def _check_body(body: Path | None, roles: dict[str, str | None]) -> None:
@@ -285,11 +279,7 @@ def _inclination(
     surface = read_stl(body)
     with progress_bar() as tell:
         records = run_inclination(surface, *grid, reference, name, tell).records
-    write_json(records, json_file)
-    if str(json_file) != "-":
-        from spaceplane.report.summary import print_flow
-
-        print_flow(records)
+    _print(records, json_file)
     return 0
 
 
@@ -305,14 +295,3 @@ def _roles(imported: Imported) -> str:
     groups = {title: [n for n, r in imported.roles.items() if r == role] for role, title in titles.items()}
     listed = "; ".join(f"{title}: {', '.join(names)}" for title, names in groups.items() if names)
     return f"mesh: {imported.mesh.cells} cells; {listed}"
-
-
-def _write(case: FlowCase, surface: Surface, imported: Imported | None, vtu: Path | None, vtp: Path | None) -> None:
-    from spaceplane.flow import export
-
-    if vtu is not None:
-        with renamed_when_done(vtu) as partial:
-            export.write_vtu(case.solution, partial, elements=imported and imported.elements)
-    if vtp is not None:
-        with renamed_when_done(vtp) as partial:
-            export.write_vtp(surface, case.solution, partial)

@@ -23,7 +23,7 @@ def least_values(mach: np.ndarray, gamma: float) -> np.ndarray:
     enthalpy.
     """
     density = np.exp(np.interp(mach, VACUUM_MACH, np.log(THINNEST)))
-    return np.array([density, 0.5 * density**1.4 / gamma])
+    return np.array([density, 0.5 * density**gamma / gamma])
 
 
 @inlined

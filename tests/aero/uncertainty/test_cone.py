@@ -7,6 +7,7 @@ import pytest
 from spaceplane.aero.exact.conical import center_of_pressure
 from spaceplane.aero.exact.inclined_cone import normal_force_slope
 from spaceplane.aero.flow_case import run_flow, run_to_accuracy
+from spaceplane.aero.free_streams import FreeStreams
 from spaceplane.aero.uncertainty.accuracy import Accuracy
 from spaceplane.flow.settings import FlowSettings
 from spaceplane.mesh.settings import MeshSettings
@@ -16,7 +17,7 @@ from spaceplane.vehicle.properties import ReferenceLengths
 HALF_ANGLE = math.radians(20.0)
 REFERENCE = ReferenceLengths(math.pi * math.tan(HALF_ANGLE) ** 2, 1.0, 1.0, (0.0, 0.0, 0.0))
 ALPHA = math.radians(2.0)
-CONDITIONS = [3.0], [ALPHA], [0.0, ALPHA]
+STREAMS = FreeStreams([3.0], [ALPHA], [0.0, ALPHA])
 SLOPE = normal_force_slope(3.0, math.radians(20.0))
 
 
@@ -27,7 +28,7 @@ def mesh(cell):
 @pytest.fixture(scope="module")
 def cases():
     return {
-        cell: run_flow(cone(HALF_ANGLE), *CONDITIONS, REFERENCE, mesh(cell), FlowSettings(), uncertainty="mesh")
+        cell: run_flow(cone(HALF_ANGLE), STREAMS, REFERENCE, mesh(cell), FlowSettings(), uncertainty="mesh")
         for cell in (0.04, 0.08)
     }
 
@@ -55,7 +56,7 @@ def test_smaller_cells_are_more_certain(cases):
 
 
 def test_refining_to_an_accuracy_reaches_it_or_says_that_it_did_not():
-    args = cone(HALF_ANGLE), *CONDITIONS, REFERENCE, mesh(1.0), FlowSettings()
+    args = cone(HALF_ANGLE), STREAMS, REFERENCE, mesh(1.0), FlowSettings()
     case, found = run_to_accuracy(*args, Accuracy(0.27, 100_000))
     assert found.met and found.reached <= 0.27
     for record in case.records:

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from spaceplane.aero.conditions import product
-from spaceplane.aero.flow_case import condition_record
 from spaceplane.aero.inclination.compiled import CACHE
 from spaceplane.aero.inclination.settings import method
 from spaceplane.aero.inclination.solve import local_inclination
 from spaceplane.aero.integrate import Reference
+from spaceplane.aero.records import condition_record
 from spaceplane.progress import Progress
 from spaceplane.vehicle.surface import Surface
 
@@ -25,7 +25,7 @@ class InclinationCase:
     """What `run_inclination` found.
 
     Attributes:
-        records: one JSON-ready dict per condition, with the keys of `flow_case.records`.
+        records: one JSON-ready dict per condition, with the keys of `records.records`.
         coefficients: the same by part, see `integrate.coefficients`.
     """
 
