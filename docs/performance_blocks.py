@@ -1,6 +1,6 @@
 """The generated blocks of the pages on speed and on convergence.
 
-From docs/data/benchmark.json (benchmarks/run.py --json) and docs/data/stopping.json (scripts/check_stopping.py).
+From docs/data/benchmark.json (benchmarks/run.py --json) and docs/data/stopping*.json (scripts/check_stopping.py).
 """
 
 from __future__ import annotations
@@ -110,9 +110,9 @@ def scaling() -> str:
     )
 
 
-def stopping() -> str:
+def stopping(name: str = "stopping.json") -> str:
     """The stopping rule against long runs."""
-    stored = json.loads((DATA / "stopping.json").read_text(encoding="utf-8"))
+    stored = json.loads((DATA / name).read_text(encoding="utf-8"))
     head = ("Mach", "alpha, deg", "verdict", "iterations", "decades", "long run: best decades", "force differs by")
     rows = [
         (
@@ -135,4 +135,5 @@ BLOCKS: dict[str, Callable[[], str]] = {
     "bench compilation": compilation,
     "bench scaling": scaling,
     "stopping rule": stopping,
+    "stopping rule, double precision": lambda: stopping("stopping_double.json"),
 }
