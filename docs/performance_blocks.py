@@ -135,5 +135,5 @@ BLOCKS: dict[str, Callable[[], str]] = {
     "bench compilation": compilation,
     "bench scaling": scaling,
     "stopping rule": stopping,
-    "stopping rule, double precision": lambda: stopping("stopping_double.json"),
+    "stopping rule in double precision": lambda: stopping("stopping_double.json"),
 }
