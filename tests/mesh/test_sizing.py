@@ -7,6 +7,7 @@ from spaceplane.errors import InputError
 from spaceplane.mesh.generate import generate
 from spaceplane.mesh.settings import MeshSettings, RefinementBox
 from spaceplane.mesh.sizing import Sizing, round_edges, split
+from spaceplane.mesh.thickness import THIN, Thickness, cells_on_thin_walls
 
 from . import bodies
 from .test_generate import check_body, check_shape
@@ -112,6 +113,55 @@ def test_edges_of_thin_wings_get_smaller_cells():
     assert round_edges(mesh).sum() < rim.sum() or mesh.cell_size[round_edges(mesh)].max() < 0.5
     check_body(mesh, wing)
     check_shape(mesh)
+
+
+@pytest.mark.parametrize("offset", [(0.0, 0.0), (0.25, 0.25), (0.382, 0.5), (0.7, 0.3)])
+@pytest.mark.parametrize("symmetric", [None, False])
+def test_cells_follow_the_thickness_of_a_bevel(offset, symmetric):
+    """No cell beside the bevels is larger than the body there allows, in whatever plane of the grid the edges lie."""
+    plate = bodies.flat_plate(5.0, 6.0, 0.4, bevel=1.0)
+    wall_cell, levels = 0.8, 2
+    settings = MeshSettings(
+        wall_cell=wall_cell, far_field=1.5, fine_edges=True, edge_levels=levels, offset=offset, symmetric=symmetric
+    )
+    mesh = generate(plate, settings)
+    x = np.minimum(mesh.piece_center[:, 0], 5.0 - mesh.piece_center[:, 0])
+    bevel = (np.abs(mesh.piece_area[:, 2]) > 0.0) & (x < 1.0) & (np.abs(mesh.piece_center[:, 1]) < 2.0)
+    size = mesh.cell_size[mesh.wall_cell[mesh.piece_wall[bevel]]]
+    smallest = wall_cell / 2 / 2**levels
+    assert np.isclose(size.min(), smallest) and bevel.sum() > 100
+    # thickness 0.4 x; the larger thickness within a cell's length counts, as grid lines bound the cells
+    allowed = np.maximum(0.4 * (x[bevel] + size) / THIN, 2.0 * smallest)
+    assert (size <= allowed + 1e-9).all()
+    assert (size[x[bevel] < 0.1] < 0.25 * wall_cell + 1e-9).all()
+    check_body(mesh, plate)
+    check_shape(mesh)
+
+
+def test_edges_in_a_plane_of_the_grid_get_smaller_cells():
+    """Cells above and below the plane hold one side of the wing each: the wall turns in none of them."""
+    wing = bodies.diamond_wing(5.0, 6.0, 0.4)
+    settings = {"wall_cell": 0.8, "far_field": 1.5}
+    plain = generate(wing, MeshSettings(**settings))
+    leading = np.abs(plain.cell_center - [0.0, 0.0, 0.0]).max(axis=1) < 1.0
+    assert plain.record["symmetric"] and not round_edges(plain)[leading].any()
+    mesh = generate(wing, MeshSettings(**settings, edge_levels=2))
+    first = mesh.piece_center[:, 0] < 0.1
+    assert first.any() and mesh.cell_size[mesh.wall_cell[mesh.piece_wall[first]]].max() < 0.25 * 0.8 + 1e-9
+
+
+def test_cells_wanted_on_thin_walls():
+    """As large as the body is thick on `THIN`, but no smaller than allowed: on both its sides, on four of the line."""
+    point = np.array([[1.0, 2.0, 3.0], [4.0, 5.0, 6.0], [7.0, 8.0, 9.0]])
+    walls = Thickness(point, np.array([2, 0, 1]), np.array([0.18, 0.01, 5.0]), spacing=0.5)
+    found = cells_on_thin_walls(walls, smallest=0.1, largest=0.8)
+    assert found.point.shape == (16, 3)
+    near = np.linalg.norm(found.point[:, None] - point, axis=2)
+    assert (near.min(axis=1) < 0.2).all() and (near[:, 2] > 1.0).all()
+    assert np.allclose(found.cell[near[:, 0] < 0.2], 0.18 / THIN) and np.allclose(found.cell[near[:, 1] < 0.2], 0.1)
+    above = found.point[(near[:, 0] < 0.2) & (found.point[:, 2] > 3.1)]
+    assert np.allclose(above[:, 2], 3.18) and np.unique(np.sign(above[:, :2] - point[0, :2]), axis=0).shape == (4, 2)
+    assert not len(cells_on_thin_walls(walls, smallest=0.1, largest=0.1).cell)
 
 
 def test_thin_walls_are_judged_by_their_own_cells():

@@ -38,7 +38,8 @@ class CutCells:
         split_cells: cells with more than one control volume.
         folded_edges: cell edges along which the surface lies inside itself.
         gauss_error: largest difference between a volume's sizes from the three coordinate directions.
-        thin: [n, (x, y, z, thickness, triangle)] places where a grid line leaves the body within `thin_below` cells.
+        thin: [n, (x, y, z, thickness, triangle, axis)] places where a grid line along the axis enters the body to leave
+            it within `thin_below` cells.
         lines: [n] triangle of every crossing examined for thickness.
         seconds: by phase.
     """
@@ -247,5 +248,6 @@ def _thin_walls(surface: Subdivision, points: np.ndarray, triangles: np.ndarray,
         thickness = at[entry + 1, axis] - at[entry, axis]
         lines.append(triangle[entry])
         few = entry[thickness < below]
-        thin.append(np.column_stack([at[few], thickness[thickness < below], triangle[few]]))
+        along = np.full(len(few), axis)
+        thin.append(np.column_stack([at[few], thickness[thickness < below], triangle[few], along]))
     return np.concatenate(thin), np.concatenate(lines)

@@ -17,8 +17,9 @@ from spaceplane.mesh.cutcells import CutCells, cut_cells
 from spaceplane.mesh.grid import Grid, boxes_in_cells, place_grid, refined
 from spaceplane.mesh.mesh import Mesh
 from spaceplane.mesh.settings import MeshSettings
-from spaceplane.mesh.sizing import Sizing, finer_levels, frustum_cells, round_edges, split, split_cells
+from spaceplane.mesh.sizing import Sizing, both, finer_levels, frustum_cells, round_edges, split, split_cells
 from spaceplane.mesh.symmetry import is_symmetric, mirrored_parts
+from spaceplane.mesh.thickness import Thickness, cells_on_thin_walls, thickness_of
 from spaceplane.mesh.walls import fine_parts, fine_walls, join_coarse_walls, wall_sizes
 from spaceplane.progress import Progress, silent
 from spaceplane.vehicle.lofts import box
@@ -75,7 +76,7 @@ def compile_kernels(progress: Progress | None = None) -> None:
     shell = box(corners)
     cube = Surface(shell.points, shell.triangles, np.zeros(len(shell.triangles), np.int32), ("cube",))
     for half in (True, False):  # every kernel, with the types of either kind of mesh
-        mesh = _generate(cube, MeshSettings(wall_cell=0.3, far_field=1.0, fine_edges=True), half)
+        mesh, _ = _generate(cube, MeshSettings(wall_cell=0.3, far_field=1.0, fine_edges=True), half)
         coarsen(mesh)
     CACHE.mark_complete("mesh")
 
@@ -153,17 +154,22 @@ def _cut(surface: Surface, grid: Grid, thin: float) -> tuple[CutCells, np.ndarra
 
 def _with_edges(surface: Surface, settings: MeshSettings, half: bool, sizing: Sizing | None = None) -> Mesh:
     """Mesh with the given wall cell, cells at the edges of thin walls halved as often as the settings ask for."""
-    mesh = _generate(surface, settings, half, sizing)
+    mesh, walls = _generate(surface, settings, half, sizing)
+    smallest = settings.wall_cell / (2.0 if settings.graded_wall else 1.0)
     for _ in range(settings.edge_levels):
+        smallest *= 0.5
         edges = round_edges(mesh)
-        if not edges.any():
+        thin = cells_on_thin_walls(walls, smallest, settings.wall_cell)
+        if not edges.any() and not len(thin.cell):
             break
-        mesh = _generate(surface, settings, half, split(mesh, edges))
+        mesh, walls = _generate(surface, settings, half, both(split(mesh, edges), thin))
     return mesh
 
 
-def _generate(surface: Surface, settings: MeshSettings, half: bool, sizing: Sizing | None = None) -> Mesh:
-    """Mesh with the given wall cell."""
+def _generate(
+    surface: Surface, settings: MeshSettings, half: bool, sizing: Sizing | None = None
+) -> tuple[Mesh, Thickness]:
+    """Mesh with the given wall cell, and the thickness of the body where it is thin."""
     clock = time.perf_counter
     begin = clock()
     grid = place_grid(surface, settings, half)
@@ -233,4 +239,4 @@ def _generate(surface: Surface, settings: MeshSettings, half: bool, sizing: Sizi
     mesh.record.update(
         describe(mesh, surface, settings, grid, cut, wetted, body, merged, enclosed, thin, seconds, adapted)
     )
-    return mesh
+    return mesh, thickness_of(cut, shift, grid)

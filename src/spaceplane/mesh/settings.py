@@ -60,7 +60,8 @@ class MeshSettings:
         fine_edges: half-sized cells also where the wall turns by more than about 50 degrees within a wall cell: leading
             and trailing edges, tips, plates thinner than a cell.
         edge_levels: how many times cells are halved where air connects the two sides of a thin wall round its edge
-            within a cell (the wall turns by more than 120 degrees there): one pressure acts on both sides.
+            within a cell (the wall turns by more than 120 degrees there), so that one pressure acts on both sides, and
+            where the body is thinner than 0.45 of the cell, as towards a sharp edge.
         boxes: refinement boxes, for air and walls; mirrored on a body meshed as half and mirror image.
         frustums: refinement in truncated cones, as in the air between a slender body and its shock, for air and walls;
             mirrored likewise.

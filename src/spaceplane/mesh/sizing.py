@@ -75,6 +75,11 @@ def sizes_of(mesh: Mesh, ratio: float = 1.0) -> Sizing:
     return Sizing(found.point, ratio * found.cell)
 
 
+def both(one: Sizing, other: Sizing) -> Sizing:
+    """Cells as small as either asks for."""
+    return Sizing(np.concatenate([one.point, other.point]), np.concatenate([one.cell, other.cell]))
+
+
 def round_edges(mesh: Mesh) -> np.ndarray:
     """[cell] whether air connects the two sides of a thin wall round its edge within the cell.
 
