@@ -27,11 +27,14 @@ LAYERS, NEAR_LAYERS = (10, 4), (6, 1)
 """Layers of the finest cells at the wall and of each coarser size, where the shock has no cells of its own: they should
 hold half of the air between cone and shock, for where they leave it C_N_alpha falls by 0.8 % (20 deg, Mach 3, 60 cells
 along). The second where cells are so small because the shock is near."""
-THIN = 0.15
-"""Thickness of the air between cone and shock a metre behind the apex, m, up to which a shock has cells of its own."""
-INSIDE, OUTSIDE = 5.0, 2.0
-"""Reach of those cells from the exact shock, in their own edges: a captured shock takes two on either side."""
-ACROSS, MOST_AT_SHOCK = 20, 450_000
+THIN = 0.3
+"""Thickness of the air between cone and shock a metre behind the apex, m, up to which a shock has cells of its own:
+at Mach 3 and 10, not at 1.5."""
+INSIDE, OUTSIDE = 5.0, 4.0
+"""Reach of those cells from the exact shock, in their own edges: a captured shock takes two on either side, and at
+incidence it moves by up to 1.2 of them (10 deg, Mach 3). Where two are outside, its foot enters coarser cells on one
+side of the cone, and C_N_alpha stays 1.3 % low (20 deg, Mach 3) however many cells there are."""
+ACROSS, MOST_AT_SHOCK = 20, 580_000
 """Cells at the shock to the thickness of the air behind it, and how many of them there may be."""
 SLANT, LONGEST = 0.9, 1.0 / 40
 """Where the air is thin, cells are stretched along x: the tangent of the shock's angle to them comes near the one, and
@@ -66,8 +69,8 @@ def run(fine: bool, progress: Progress) -> list[Record]:
     """Surface Cp, C_N_alpha, C_m_alpha and their lateral twins on nine cones.
 
     Args:
-        fine: where the air between cone and shock is thin, 40 wall cells or more along the cone and, at the shock,
-            cells of half their size, 14 to 20 to the thickness; elsewhere 80 wall cells along. Else 30 along, 4 across.
+        fine: at Mach 3 and 10, 40 wall cells or more along the cone (30 deg, Mach 3: 39) and, at the shock, cells of
+            half their size, 14 to 20 to the thickness; at Mach 1.5 80 wall cells along. Else 30 along, 4 across.
         progress: told what runs.
     """
     # One mesh for the Mach numbers that ask for the same one.
@@ -136,18 +139,22 @@ def _at_wall(cell: float, wall_layers: int, growth_layers: int) -> MeshSettings:
 
 
 def _at_shock(slope: float, length: float, cell: float) -> MeshSettings:
-    """Cells of `cell`, m, about a shock of `slope` along `length`, m; twice that up to the wall, four times behind."""
-    end = length + OUTSIDE * cell
-    reach = slope * end + OUTSIDE * cell
+    """Cells of `cell`, m, about a shock of `slope` along `length`, m; twice that up to the wall, to the tail's end, and
+    four times behind."""
+    end, tail = length + OUTSIDE * cell, (1.0 + TAIL) * length + OUTSIDE * cell
     split = INSIDE * cell / slope  # where what lies INSIDE the shock begins to leave the axis out
-    nose, rest = slope * split + OUTSIDE * cell, slope * end - INSIDE * cell
+
+    def reach(x: float) -> float:
+        return slope * x + OUTSIDE * cell
+
     ahead = (-OUTSIDE * cell, 0.0, 0.0)
+    start, rest = OUTSIDE * cell, slope * end - INSIDE * cell
     return MeshSettings(
         wall_cell=4.0 * cell,
         frustums=(
-            RefinementFrustum(ahead, (split, 0.0, 0.0), OUTSIDE * cell, nose, cell),
-            RefinementFrustum((split, 0.0, 0.0), (end, 0.0, 0.0), nose, reach, cell, 0.0, rest),
-            RefinementFrustum(ahead, (end, 0.0, 0.0), OUTSIDE * cell, reach, 2.0 * cell),
+            RefinementFrustum(ahead, (split, 0.0, 0.0), start, reach(split), cell),
+            RefinementFrustum((split, 0.0, 0.0), (end, 0.0, 0.0), reach(split), reach(end), cell, 0.0, rest),
+            RefinementFrustum(ahead, (tail, 0.0, 0.0), start, reach(tail), 2.0 * cell),
         ),
         wall_layers=1,
         growth_layers=1,
