@@ -1,5 +1,6 @@
 """The flow cases: coarse and quick in the suite, all of them on fine meshes when marked slow."""
 
+import itertools
 import math
 
 import numpy as np
@@ -7,6 +8,7 @@ import pytest
 
 from spaceplane import validation
 from spaceplane.aero.exact.conical import taylor_maccoll
+from spaceplane.aero.exact.inclined_cone import shock_tilt
 from spaceplane.aero.integrate import integrate
 from spaceplane.flow.solution import FlowConditions
 from spaceplane.mesh.generate import generate
@@ -54,25 +56,38 @@ def test_coarse_m6_has_nearly_the_published_lift():
 
 
 @pytest.mark.parametrize("angle_deg", cones.HALF_ANGLES_DEG)
-def test_exact_shocks_of_cones_at_mach_10_lie_in_cells_of_their_own(angle_deg):
-    """Fine: two cells outside and two inside of the exact shock are of the finest size, the walls' of twice it."""
-    mach, angle = 10.0, math.radians(angle_deg)
+@pytest.mark.parametrize("mach", [3.0, 10.0])
+def test_exact_shocks_of_cones_lie_in_cells_of_their_own(mach, angle_deg):
+    """Fine: the shock and two cells on either side are in the finest ones, at Mach 3 at incidence too, where it moves
+    most; walls have twice that."""
+    angle = math.radians(angle_deg)
     plan = cones.mesh_plan(mach, angle, True)
     frustums = plan.settings.frustums
     cell = min(frustum.cell for frustum in frustums)
     assert 14.0 < cones.layer(mach, angle) / cell < 20.1
     x = np.linspace(2.0 * cell * plan.stretch, 1.0, 400)
 
-    def at(r: np.ndarray) -> np.ndarray:
+    def at(x: np.ndarray, r: np.ndarray) -> np.ndarray:
         """Points in the plane y = 0 of the squeezed cone."""
         return np.stack([x / plan.stretch, np.zeros_like(x), r], axis=1)
 
-    for off in (-2.0, 0.0, 1.9):
-        r = np.maximum(x * math.tan(taylor_maccoll(mach, angle).shock_angle) + off * cell, 0.0)
-        assert any_of(frustums, cell, at(r)).all()
-    wall = at(x * math.tan(angle))
+    shock, turn = taylor_maccoll(mach, angle).shock_angle, shock_tilt(mach, angle) * cones.STEP
+    for side, cells in itertools.product((-turn, 0.0, turn) if mach == 3.0 else (0.0,), (-2.0, 0.0, 1.9)):
+        r = np.maximum(x * math.tan(shock + side) + cells * cell, 0.0)
+        assert any_of(frustums, cell, at(x, r)).all()
+    wall = at(x, x * math.tan(angle))
     assert any_of(frustums, 2.0 * cell, wall).all()
     assert not any_of(frustums, cell, wall).all()
+
+
+def test_no_cell_at_the_rim_of_a_fine_cone_reaches_the_measured_metre():
+    """The cell that holds the rim feels the base: on the tail cells are short enough to leave it there."""
+    for mach, angle_deg in itertools.product((3.0, 10.0), cones.HALF_ANGLES_DEG):
+        angle = math.radians(angle_deg)
+        plan = cones.mesh_plan(mach, angle, True)
+        rim = np.array([[1.0 + cones.TAIL, 0.0, (1.0 + cones.TAIL) * math.tan(angle)]]) / [plan.stretch, 1.0, 1.0]
+        held = [frustum.cell for frustum in plan.settings.frustums if frustum.contains(rim)[0]]
+        assert min([plan.settings.wall_cell, *held]) * plan.stretch < 0.7 * cones.TAIL
 
 
 def test_cells_of_cones_are_long_where_the_air_is_thin():
@@ -88,14 +103,14 @@ def any_of(frustums, cell, points):
 
 
 def test_quick_cones_take_cells_by_distance_from_the_wall():
-    """Where the shock is far off the fine ones too, one mesh for Mach 1.5 and 3; walls are finer where it is close."""
+    """Where the shock is far off the fine ones too; walls are finer where it is close, else the same at all speeds."""
     angle = math.radians(10.0)
     near, far, slow = (
         cones.mesh_plan(*what) for what in ((10.0, angle, False), (3.0, angle, False), (1.5, angle, True))
     )
     assert not any(plan.settings.frustums or plan.stretch != 1.0 for plan in (near, far, slow))
     assert near.settings.wall_cell < far.settings.wall_cell == 2.0 / 30
-    assert slow == cones.mesh_plan(3.0, angle, True) and slow.settings.wall_cell == 2.0 / 80
+    assert slow.settings.wall_cell == 2.0 / 80
     assert far == cones.mesh_plan(1.5, angle, False) and far.settings.wall_layers > near.settings.wall_layers
 
 

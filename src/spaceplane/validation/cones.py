@@ -27,10 +27,14 @@ LAYERS, NEAR_LAYERS = (10, 4), (6, 1)
 """Layers of the finest cells at the wall and of each coarser size, where the shock has no cells of its own: they should
 hold half of the air between cone and shock, for where they leave it C_N_alpha falls by 0.8 % (20 deg, Mach 3, 60 cells
 along). The second where cells are so small because the shock is near."""
-THIN = 0.15
-"""Thickness of the air between cone and shock a metre behind the apex, m, up to which a shock has cells of its own."""
-INSIDE, OUTSIDE = 5.0, 2.0
-"""Reach of those cells from the exact shock, in their own edges: a captured shock takes two on either side."""
+THIN, FAR = 0.15, 0.3
+"""Thickness of the air between cone and shock a metre behind the apex, m: up to the first, at Mach 10, cells are
+stretched along x; up to the second, at Mach 3 as well, the shock has cells of its own."""
+INSIDE, OUTSIDE, MOVING_OUTSIDE = 5.0, 2.0, 4.0
+"""Reach of those cells from the exact shock, in their own edges. A captured shock takes two on either side. The last is
+for Mach 3: there the shock moves at incidence (`shock_tilt`), by 0.6 cells at 20 deg and 1.1 at 10 deg, and where but
+two are outside its foot enters coarser cells on the lee side: C_N_alpha then stays 1.3 % low at 20 deg, the more cells
+there are the more of them the shock moves. At Mach 10, where 1 deg moves it by 0.1 to 0.8 cells, two have been kept."""
 ACROSS, MOST_AT_SHOCK = 20, 450_000
 """Cells at the shock to the thickness of the air behind it, and how many of them there may be."""
 SLANT, LONGEST = 0.9, 1.0 / 40
@@ -66,8 +70,8 @@ def run(fine: bool, progress: Progress) -> list[Record]:
     """Surface Cp, C_N_alpha, C_m_alpha and their lateral twins on nine cones.
 
     Args:
-        fine: where the air between cone and shock is thin, 40 wall cells or more along the cone and, at the shock,
-            cells of half their size, 14 to 20 to the thickness; elsewhere 80 wall cells along. Else 30 along, 4 across.
+        fine: at Mach 3 and 10, 40 wall cells or more along the cone (30 deg, Mach 3: 39) and, at the shock, cells of
+            half their size, 14 to 20 to the thickness; at Mach 1.5 80 wall cells along. Else 30 along, 4 across.
         progress: told what runs.
     """
     # One mesh for the Mach numbers that ask for the same one.
@@ -112,15 +116,17 @@ def cone_records(
 def mesh_plan(mach: float, half_angle: float, fine: bool) -> Plan:
     """Mesh of a cone of 1 m and `half_angle` rad: see `run`."""
     thickness = layer(mach, half_angle)
-    if not fine or thickness > THIN:
+    if not fine or thickness > FAR:
         along, across = 1.0 / (80 if fine else 30), thickness / 4
         return Plan(_at_wall(along, *LAYERS) if fine or along <= across else _at_wall(across, *NEAR_LAYERS))
     slope = math.tan(half_angle) + thickness
+    if thickness > THIN:
+        return Plan(_at_shock(slope, 1.0, thickness / ACROSS, MOVING_OUTSIDE, TAIL))
     area = math.pi * slope * math.hypot(1.0, slope)  # of the shock, m2
     cell = thickness / ACROSS
     stretch = max(1, min(round(SLANT / slope), math.floor(LONGEST / (2.0 * cell))))
     cell = max(cell, math.sqrt((INSIDE + OUTSIDE) * area / (stretch * MOST_AT_SHOCK)))
-    return Plan(_at_shock(stretch * slope, 1.0 / stretch, cell), stretch)
+    return Plan(_at_shock(stretch * slope, 1.0 / stretch, cell, OUTSIDE), stretch)
 
 
 def _at_wall(cell: float, wall_layers: int, growth_layers: int) -> MeshSettings:
@@ -135,19 +141,23 @@ def _at_wall(cell: float, wall_layers: int, growth_layers: int) -> MeshSettings:
     )
 
 
-def _at_shock(slope: float, length: float, cell: float) -> MeshSettings:
-    """Cells of `cell`, m, about a shock of `slope` along `length`, m; twice that up to the wall, four times behind."""
-    end = length + OUTSIDE * cell
-    reach = slope * end + OUTSIDE * cell
+def _at_shock(slope: float, length: float, cell: float, outside: float, tail: float = 0.0) -> MeshSettings:
+    """Cells of `cell`, m, about a shock of `slope` along `length`, m, and up to `outside` cells from it; twice that up
+    to the wall, for another `tail` m along it; four times behind."""
+    room = outside * cell
+    end, wall_end = length + room, length + tail + room
     split = INSIDE * cell / slope  # where what lies INSIDE the shock begins to leave the axis out
-    nose, rest = slope * split + OUTSIDE * cell, slope * end - INSIDE * cell
-    ahead = (-OUTSIDE * cell, 0.0, 0.0)
+
+    def reach(x: float) -> float:
+        return slope * x + room
+
+    ahead, rest = (-room, 0.0, 0.0), slope * end - INSIDE * cell
     return MeshSettings(
         wall_cell=4.0 * cell,
         frustums=(
-            RefinementFrustum(ahead, (split, 0.0, 0.0), OUTSIDE * cell, nose, cell),
-            RefinementFrustum((split, 0.0, 0.0), (end, 0.0, 0.0), nose, reach, cell, 0.0, rest),
-            RefinementFrustum(ahead, (end, 0.0, 0.0), OUTSIDE * cell, reach, 2.0 * cell),
+            RefinementFrustum(ahead, (split, 0.0, 0.0), room, reach(split), cell),
+            RefinementFrustum((split, 0.0, 0.0), (end, 0.0, 0.0), reach(split), reach(end), cell, 0.0, rest),
+            RefinementFrustum(ahead, (wall_end, 0.0, 0.0), room, reach(wall_end), 2.0 * cell),
         ),
         wall_layers=1,
         growth_layers=1,

@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from spaceplane.aero.exact.inclined_cone import normal_force_slope
+from spaceplane.aero.exact.inclined_cone import normal_force_slope, shock_tilt
 from spaceplane.errors import InputError
 
 PUBLISHED = {
@@ -42,6 +42,18 @@ def test_the_slope_tends_to_that_of_impact_theory_where_the_shock_lies_on_the_co
     newton = 2.0 * math.cos(angle) ** 2
     errors = [abs(normal_force_slope(50.0, angle, gamma) / newton - 1.0) for gamma in (1.4, 1.2, 1.05)]
     assert errors[2] < errors[1] < errors[0] and errors[2] < 0.003
+
+
+def test_weak_shocks_turn_with_the_wind():
+    """The Mach cone of a needle lies about the wind, whatever the needle's incidence."""
+    short = [1.0 - shock_tilt(3.0, math.radians(angle)) for angle in (4.0, 2.0, 1.0)]
+    assert 0.0 < short[2] < 0.01 and short[2] < short[1] < short[0]
+
+
+def test_shocks_that_lie_on_the_cone_turn_with_it():
+    """Where the layer has no thickness (gamma = 1) the shock is the cone."""
+    tilts = [abs(shock_tilt(50.0, math.radians(10.0), gamma)) for gamma in (1.4, 1.2, 1.05)]
+    assert tilts[2] < tilts[1] < tilts[0] and tilts[2] < 0.1
 
 
 def test_detached_shocks_are_refused():

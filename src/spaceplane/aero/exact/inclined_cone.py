@@ -32,13 +32,32 @@ def normal_force_slope(mach: float, half_angle: float, gamma: float = 1.4) -> fl
     Raises:
         InputError: if the Mach number is not supersonic or the shock is detached.
     """
+    pressure = _solved(mach, half_angle, gamma)[1]
+    # C_N = -(surface integral of pressure * cos(phi)^2 * cos(half angle)) / (q * base).
+    return -pressure / (mach**2 * math.tan(half_angle))
+
+
+def shock_tilt(mach: float, half_angle: float, gamma: float = 1.4) -> float:
+    """Turn of the shock against the cone per rad of incidence: 0 where it stays with the cone, 1 with the wind.
+
+    On the lee side the shock's angle to the cone's axis grows by it, on the windward side it falls.
+
+    Args:
+        mach, half_angle, gamma: see `normal_force_slope`.
+
+    Raises:
+        InputError: if the Mach number is not supersonic or the shock is detached.
+    """
+    return _solved(mach, half_angle, gamma)[0]
+
+
+def _solved(mach: float, half_angle: float, gamma: float) -> tuple[float, float]:
+    """Tilt of the shock, and amplitude of the pressure at the wall, per rad of incidence."""
     shock = taylor_maccoll(mach, half_angle, gamma).shock_angle
     # Amplitudes are linear in the shock's tilt, of which the wall lets through no air.
     still, tilted = (_amplitudes_at_wall(mach, half_angle, shock, tilt, gamma) for tilt in (0.0, 1.0))
     tilt = -still[0] / (tilted[0] - still[0])
-    pressure = still[1] + tilt * (tilted[1] - still[1])
-    # C_N = -(surface integral of pressure * cos(phi)^2 * cos(half angle)) / (q * base).
-    return float(-pressure / (mach**2 * math.tan(half_angle)))
+    return tilt, still[1] + tilt * (tilted[1] - still[1])
 
 
 def _amplitudes_at_wall(mach: float, half_angle: float, shock: float, tilt: float, gamma: float) -> tuple[float, float]:
