@@ -34,7 +34,7 @@ INSIDE, OUTSIDE, MOVING_OUTSIDE = 5.0, 2.0, 4.0
 """Reach of those cells from the exact shock, in their own edges. A captured shock takes two on either side. The last is
 for Mach 3: there the shock moves at incidence (`shock_tilt`), by 0.6 cells at 20 deg and 1.1 at 10 deg, and where but
 two are outside its foot enters coarser cells on the lee side: C_N_alpha then stays 1.3 % low at 20 deg, the more cells
-there are the more of them the shock moves. At Mach 10, where 1 deg moves it by 0.1 to 0.8 cells, two have been kept."""
+there are the more of them the shock moves. At Mach 10, where 1 deg moves it by 0.1 to 0.8 cells, two do as well."""
 ACROSS, MOST_AT_SHOCK = 20, 450_000
 """Cells at the shock to the thickness of the air behind it, and how many of them there may be."""
 SLANT, LONGEST = 0.9, 1.0 / 40
