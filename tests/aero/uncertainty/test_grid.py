@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from spaceplane.aero.uncertainty.grid import ORDER, SAFETY, half_width
+from spaceplane.aero.uncertainty.grid import ORDER, SAFETY, SAFETY_TRANSONIC, half_width
 
-MACH = np.array([0.8, 1.5, 2.5, 5.0])
+MACH = np.array([0.5, 1.5, 2.5, 5.0])
 FACTOR = SAFETY / (2.0**ORDER - 1.0)  # on the difference between two meshes of which one is twice as coarse
 
 
@@ -32,10 +32,26 @@ def test_errors_of_half_to_second_order_are_covered_too():
 def test_a_group_is_off_by_no_less_than_its_share_of_another_and_only_where_it_has_one():
     fine = np.full((2, 2), 0.3)
     args = fine, fine + np.array([[0.001], [0.02]]), np.array([2.0, 2.0]), ["force", "moment"], 2.0
-    force, moment = half_width(*args, {"force": ("moment", np.array([0.25, 0.0]))})
+    force, moment = half_width(*args, {"force": [("moment", np.array([0.25, 0.0])), ("none", np.ones(2))]})
     assert force[0] == pytest.approx(0.25 * moment[0])
     np.testing.assert_array_equal(half_width(*args)[0], force[1])
     assert force[1] < 0.1 * moment[1]
+
+
+def test_of_several_ties_the_largest_holds():
+    fine = np.full((3, 1), 0.3)
+    args = fine, fine + np.array([[0.001], [0.02], [0.03]]), np.array([2.0]), ["force", "moment", "other"], 2.0
+    ties = [("moment", np.array([0.5])), ("other", np.array([0.5]))]
+    for order in (ties, ties[::-1]):
+        force, _, other = half_width(*args, {"force": order})[:, 0]
+        assert force == pytest.approx(0.5 * other)
+
+
+def test_near_the_speed_of_sound_the_factor_of_safety_is_larger():
+    mach = np.array([0.65, 0.8, 1.2, 1.35])
+    found = half_width(np.full((1, 4), 0.3), np.full((1, 4), 0.31), mach, ["force"], 2.0)[0]
+    np.testing.assert_allclose(found[[0, 3]], FACTOR * 0.01)
+    np.testing.assert_allclose(found[[1, 2]] / found[0], SAFETY_TRANSONIC / SAFETY)
 
 
 def test_the_estimate_falls_with_the_cell():
