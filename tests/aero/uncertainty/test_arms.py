@@ -14,7 +14,7 @@ from spaceplane.dynamics.flightpoint import flight_point
 from spaceplane.validation.bodies import cone, sphere
 from spaceplane.vehicle.properties import ReferenceLengths
 
-ARMS = Arms(pitch=5.0, lateral=4.0, mean_pitch=2.0, along_chord=4.5, along_span=3.5)
+ARMS = Arms(pitch=5.0, yaw=4.0, mean_pitch=2.0, along_chord=4.5, along_span=3.5)
 
 
 def reference(length, center=0.0):
@@ -33,22 +33,22 @@ def test_arms_are_those_of_the_body_about_the_moment_center():
     conditions = points(5.0).conditions
     # on a sphere of radius 1 about its centre the mean of x squared is 1 / 3
     about = arms_of(solved(sphere(), ReferenceLengths(math.pi, 2.0, 4.0, (1.0, 0.0, 0.0)), conditions))
-    assert about.pitch == pytest.approx(0.5, rel=0.01) and about.lateral == pytest.approx(0.25, rel=0.01)
+    assert about.pitch == pytest.approx(0.5, rel=0.01) and about.yaw == pytest.approx(0.25, rel=0.01)
     assert about.mean_pitch == pytest.approx(0.5 / math.sqrt(3.0), rel=0.01)
     # its nose for a moment centre: the mean of x squared is 4 / 3, and the farthest wall 2 away
     nose = arms_of(solved(sphere(), ReferenceLengths(math.pi, 2.0, 4.0, (0.0, 0.0, 0.0)), conditions))
-    assert nose.pitch == pytest.approx(1.0, rel=0.01) and nose.lateral == pytest.approx(0.5, rel=0.01)
+    assert nose.pitch == pytest.approx(1.0, rel=0.01) and nose.yaw == pytest.approx(0.5, rel=0.01)
     assert nose.mean_pitch == pytest.approx(0.5 * math.sqrt(4.0 / 3.0), rel=0.01)
     assert nose.along_chord == pytest.approx(1.0, rel=0.01) and nose.along_span == pytest.approx(0.5, rel=0.01)
 
 
 def test_lift_takes_the_moments_error_over_the_longest_arm_and_the_moment_lift_s_near_the_speed_of_sound():
     mach = np.array([0.5, 0.8, 1.2, 2.0])
-    found = floors(["lift alpha", "pitch alpha", "drag alpha", "side beta", "lateral beta"], ARMS, mach)
+    found = floors(["lift alpha", "pitch alpha", "drag alpha", "side beta", "yaw beta"], ARMS, mach)
     assert set(found) == {"lift alpha", "pitch alpha", "side beta"}
     ((other, share),) = found["pitch alpha"]
     assert other == "lift alpha" and share.tolist() == [0.0, 2.0, 2.0, 0.0]
-    for name, wanted, arm in (("lift alpha", "pitch alpha", 5.0), ("side beta", "lateral beta", 4.0)):
+    for name, wanted, arm in (("lift alpha", "pitch alpha", 5.0), ("side beta", "yaw beta", 4.0)):
         ((other, share),) = found[name]
         assert other == wanted
         np.testing.assert_allclose(share, 1.0 / arm)
@@ -56,17 +56,18 @@ def test_lift_takes_the_moments_error_over_the_longest_arm_and_the_moment_lift_s
 
 def test_near_the_speed_of_sound_rates_take_the_angle_s_error_at_the_farthest_wall():
     mach = np.array([0.5, 0.8, 2.0])
-    found = floors(["pitch q", "lateral r", "lift q", "side p", "lateral p"], ARMS, mach)
+    found = floors(["pitch q", "yaw r", "lift q", "side p", "yaw p", "roll r"], ARMS, mach)
     assert found["pitch q"][1][0] == "pitch alpha" and found["pitch q"][1][1].tolist() == [0.0, 9.0, 0.0]
-    ((other, share),) = found["lateral r"]
-    assert other == "lateral beta" and share.tolist() == [0.0, 7.0, 0.0]
+    ((other, share),) = found["yaw r"]
+    assert other == "yaw beta" and share.tolist() == [0.0, 7.0, 0.0]
     assert [other for other, _ in found["lift q"]] == ["pitch q", "lift alpha"]
-    assert "lateral p" not in found and len(found["side p"]) == 1
+    assert found["roll r"][0][0] == "roll beta"
+    assert "yaw p" not in found and len(found["side p"]) == 1
     # at the nose of a sphere of radius 1 turning about its rear, q c / 2V of one is an angle of 2 / (c / 2) there
     conditions = points(5.0).conditions
     for length in (1.0, 10.0):
         arms = arms_of(solved(sphere(), reference(length, 2.0), conditions))
-        ties = floors(["pitch q", "lateral r"], arms, np.array([1.0])).values()
+        ties = floors(["pitch q", "yaw r"], arms, np.array([1.0])).values()
         for *_, (_, share) in ties:
             assert share[0] == pytest.approx(2.0 / (0.5 * length), rel=0.01)
 

@@ -31,14 +31,14 @@ class Arms:
 
     Attributes:
         pitch: farthest wall along x or z on the chord.
-        lateral: farthest wall along any axis on the span.
+        yaw: farthest wall along x or y on the span.
         mean_pitch: root mean square along x, by area, on the chord.
         along_chord: farthest wall along x on the chord.
         along_span: the same on the span.
     """
 
     pitch: float
-    lateral: float
+    yaw: float
     mean_pitch: float
     along_chord: float
     along_span: float
@@ -50,21 +50,21 @@ def arms_of(coefficients: xr.Dataset) -> Arms:
     x, y, z = (float(v) for v in head["wall_reach_m"])
     chord, span = head["c_ref_m"], head["b_ref_m"]
     mean = float(head["wall_rms_m"][0])
-    return Arms(max(x, z) / chord, max(x, y, z) / span, mean / chord, x / chord, x / span)
+    return Arms(max(x, z) / chord, max(x, y) / span, mean / chord, x / chord, x / span)
 
 
 def floors(groups: Sequence[str], arms: Arms, mach: np.ndarray) -> dict[str, list[tuple[str, np.ndarray]]]:
     """Group to others and the share of the mean error [condition] of each that is the least of its own.
 
     Args:
-        groups: "lift", "drag", "side", "pitch" or "lateral", a space, and the quantity of a derivative.
+        groups: "lift", "drag", "side", "pitch", "roll" or "yaw", a space, and the quantity of a derivative.
         arms: of the body.
         mach: [condition] Mach number.
     """
     always, near = np.ones(len(mach)), transonic(mach).astype(float)
     shares = {
         "lift": ("pitch", always / arms.pitch),
-        "side": ("lateral", always / arms.lateral),
+        "side": ("yaw", always / arms.yaw),
         "pitch": ("lift", near * arms.mean_pitch),
     }
     # rates are reduced by half the length, q c / 2V: at x the angle is 2 x / c of them

@@ -20,9 +20,10 @@ SCALES = {
     "drag": ("CD", "CA", "CA_forebody", "CA_base"),
     "side": ("CY",),
     "pitch": ("Cm",),
-    "lateral": ("Cl", "Cn"),
+    "roll": ("Cl",),
+    "yaw": ("Cn",),
 }
-"""Coefficients whose errors are of one size: a base or a bow shock does to one what it does not to another."""
+"""Coefficients of one kind of load, see `half_width`."""
 WITH_ERROR = (*WITH_SPREAD, "CA_forebody", "CA_base")
 """Coefficients that have an error; the solver's final window tells the two shares of CA no more than of CA itself."""
 OF_MESH = "_mesh_error"

@@ -7,13 +7,15 @@ power `ORDER` of the cell, and which differs by e from that on cells r times as 
 
 With two meshes the order is assumed, not observed: 0.8, which is what HORUS-2B's coefficients show on average from
 wall cells of 0.5 to 0.08 m, with the shocks, edges and cut cells that a scheme of second order meets there. The factor
-of safety is Roache's 3 for two grids, which Eca and Hoekstra (J. Comput. Phys. 262, 2014) take too where data scatter.
-Near the speed of sound it is 4: shocks stand on the wall there, and two meshes that misplace them alike agree better
-with each other than with the exact flow (docs/uncertainty.md has how often either holds the error).
+of safety is calibrated, as Xing and Stern (J. Fluids Eng. 132, 2010) do: the smallest that holds nine in ten of the
+longitudinal and lateral coefficients and derivatives of HORUS-2B, 2.5 (Roache's own for two grids is 3). Near the speed
+of sound it is 4: shocks stand on the wall there, and two meshes that misplace them alike agree better with each other
+than with the exact flow (docs/uncertainty.md has how often either holds on other bodies).
 
 One difference may be small by chance while the error is not, so e is not taken alone. It is at least the root mean
-square of the differences at neighbouring Mach numbers, of the same quantity and, with less weight, of those that share
-its scale; and that of a force at least that of the moments that it makes, see `arms`.
+square of the differences of the same quantity at neighbouring Mach numbers; and that of a force at least that of the
+moments that it makes, see `arms`. Nothing is borrowed from other quantities: a mesh does to a base what it does not to
+the forebody, and rolling moments of slender bodies have shorter arms than yawing moments.
 """
 
 from __future__ import annotations
@@ -23,15 +25,13 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 ORDER = 0.8
-SAFETY, SAFETY_TRANSONIC = 3.0, 4.0
+SAFETY, SAFETY_TRANSONIC = 2.5, 4.0
 TRANSONIC = 0.3
 """Largest distance of a transonic Mach number from one."""
 LEVEL = 0.95
 """Share of the intervals value +- U that are meant to hold the exact value."""
 MACH_WIDTH = 0.3
 """Standard width, in log Mach number, within which flows are alike enough to tell of each other's errors."""
-SIBLINGS = 0.1
-"""Weight of the mean square of the quantities of one scale beside that of the quantity itself."""
 NOTHING = 1e-4
 """Values below this share of the largest on their scale, on both meshes, are zero by symmetry: no sample of errors."""
 
@@ -50,7 +50,8 @@ def half_width(
         fine: [quantity, condition] on the mesh.
         coarse: [quantity, condition] on its companion.
         mach: [condition] Mach number.
-        group: [quantity] name of the scale: quantities of one name, such as forces, are errors of one size.
+        group: [quantity] name of the scale: quantities of one name are zero by symmetry where they are small beside
+            the largest, and what is tied to them in `at_least` is tied to their mean square.
         ratio: cell of the companion over that of the mesh, above 1.
         at_least: group to others and the share [condition] of the mean error of each that is the least of its own.
 
@@ -62,18 +63,17 @@ def half_width(
     there = np.isfinite(square) & ~_nothing(fine, coarse, group)
     near = np.exp(-0.5 * (np.log(mach[:, None] / mach[None, :]) / MACH_WIDTH) ** 2)
     own = _mean(square, there, near)
-    pooled = own.copy()
+    least = own.copy()
     rows_of = {name: [k for k, other in enumerate(group) if other == name] for name in group}
     shared = {
         name: np.where(there[rows], own[rows], 0.0).sum(axis=0) / np.maximum(there[rows].sum(axis=0), 1)
         for name, rows in rows_of.items()
     }
     for name, rows in rows_of.items():
-        pooled[rows] = (own[rows] + SIBLINGS * shared[name]) / (1.0 + SIBLINGS)
         for other, share in (at_least or {}).get(name, ()):
             if other in shared:
-                pooled[rows] = np.maximum(pooled[rows], share**2 * shared[other])
-    size = np.sqrt(np.where(there, np.maximum(square, pooled), square))
+                least[rows] = np.maximum(least[rows], share**2 * shared[other])
+    size = np.sqrt(np.where(there, np.maximum(square, least), square))
     return safety(mach) / (ratio**ORDER - 1.0) * size
 
 
