@@ -40,7 +40,7 @@ from spaceplane.aero.integrate import TOTAL
 from spaceplane.aero.uncertainty.arms import arms_of, floors
 from spaceplane.aero.uncertainty.companion import RATIO, coarser
 from spaceplane.aero.uncertainty.errors import WITH_ERROR, of_coefficients, of_derivatives
-from spaceplane.aero.uncertainty.grid import ORDER, SAFETY, SAFETY_TRANSONIC, half_width
+from spaceplane.aero.uncertainty.grid import ORDER, SAFETY, SAFETY_SUPERSONIC, half_width
 from spaceplane.flow.settings import FlowSettings
 from spaceplane.flow.solution import FlowConditions
 from spaceplane.mesh.settings import MeshSettings
@@ -300,7 +300,7 @@ def main() -> int:
         "ratio": RATIO,
         "order": ORDER,
         "safety": SAFETY,
-        "safety_transonic": SAFETY_TRANSONIC,
+        "safety_supersonic": SAFETY_SUPERSONIC,
         "meshes": meshes,
         "groups": found,
         "rows": [{k: round(v, 7) if isinstance(v, float) else v for k, v in asdict(row).items()} for row in rows],

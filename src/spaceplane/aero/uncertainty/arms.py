@@ -6,10 +6,14 @@ load along the body as well as it changes it: there a pitching moment is off by 
 the wall's root-mean-square distance. And a body that turns meets the stream at an angle that grows with the distance
 from the moment centre, q x / V: there the derivatives by a rate are off by no less than those by the angle, times the
 angle that the rate makes at the farthest wall along x.
+
+Axial force is the sum of what looks upstream and what looks downstream. That a mesh errs on them in opposite ways is
+chance, so it and drag are off by no less than both shares as if these were independent.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -57,7 +61,7 @@ def floors(groups: Sequence[str], arms: Arms, mach: np.ndarray) -> dict[str, lis
     """Group to others and the share of the mean error [condition] of each that is the least of its own.
 
     Args:
-        groups: "lift", "drag", "side", "pitch", "roll" or "yaw", a space, and the quantity of a derivative.
+        groups: "lift", "drag", "shares", "side", "pitch", "roll" or "yaw", a space, and the quantity of a derivative.
         arms: of the body.
         mach: [condition] Mach number.
     """
@@ -65,6 +69,8 @@ def floors(groups: Sequence[str], arms: Arms, mach: np.ndarray) -> dict[str, lis
     shares = {
         "lift": ("pitch", always / arms.pitch),
         "side": ("yaw", always / arms.yaw),
+        # the root of the sum of the squares of both: sqrt(2) of their root mean square
+        "drag": ("shares", math.sqrt(2.0) * always),
         "pitch": ("lift", near * arms.mean_pitch),
     }
     # rates are reduced by half the length, q c / 2V: at x the angle is 2 x / c of them

@@ -7,15 +7,15 @@ power `ORDER` of the cell, and which differs by e from that on cells r times as 
 
 With two meshes the order is assumed, not observed: 0.8, which is what HORUS-2B's coefficients show on average from
 wall cells of 0.5 to 0.08 m, with the shocks, edges and cut cells that a scheme of second order meets there. The factor
-of safety is calibrated, as Xing and Stern (J. Fluids Eng. 132, 2010) do: the smallest that holds nine in ten of the
-longitudinal and lateral coefficients and derivatives of HORUS-2B, 2.5 (Roache's own for two grids is 3). Near the speed
-of sound it is 4: shocks stand on the wall there, and two meshes that misplace them alike agree better with each other
-than with the exact flow (docs/uncertainty.md has how often either holds on other bodies).
+of safety is 4 near and below the speed of sound, where shocks stand on the wall and two meshes that misplace them alike
+agree better with each other than with the exact flow, and at hypersonic Mach numbers, where few cells lie between wall
+and shock. Between, where errors fall faster, it is calibrated as Xing and Stern (J. Fluids Eng. 132, 2010) do: 2.5, the
+smallest that leaves nine in ten of HORUS-2B's longitudinal and lateral coefficients and derivatives held (Roache's own
+for two grids is 3; docs/uncertainty.md has how often either holds the error).
 
 One difference may be small by chance while the error is not, so e is not taken alone. It is at least the root mean
-square of the differences of the same quantity at neighbouring Mach numbers; and that of a force at least that of the
-moments that it makes, see `arms`. Nothing is borrowed from other quantities: a mesh does to a base what it does not to
-the forebody, and rolling moments of slender bodies have shorter arms than yawing moments.
+square of the differences at neighbouring Mach numbers, of the same quantity and, with less weight, of those that share
+its scale; and that of a force at least that of the moments that it makes, see `arms`.
 """
 
 from __future__ import annotations
@@ -25,13 +25,17 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 ORDER = 0.8
-SAFETY, SAFETY_TRANSONIC = 2.5, 4.0
+SAFETY, SAFETY_SUPERSONIC = 4.0, 2.5
 TRANSONIC = 0.3
 """Largest distance of a transonic Mach number from one."""
+HYPERSONIC = 5.0
+"""Least hypersonic Mach number."""
 LEVEL = 0.95
 """Share of the intervals value +- U that are meant to hold the exact value."""
 MACH_WIDTH = 0.3
 """Standard width, in log Mach number, within which flows are alike enough to tell of each other's errors."""
+SIBLINGS = 0.1
+"""Weight of the mean square of the quantities of one scale beside that of the quantity itself."""
 NOTHING = 1e-4
 """Values below this share of the largest on their scale, on both meshes, are zero by symmetry: no sample of errors."""
 
@@ -50,8 +54,7 @@ def half_width(
         fine: [quantity, condition] on the mesh.
         coarse: [quantity, condition] on its companion.
         mach: [condition] Mach number.
-        group: [quantity] name of the scale: quantities of one name are zero by symmetry where they are small beside
-            the largest, and what is tied to them in `at_least` is tied to their mean square.
+        group: [quantity] name of the scale: quantities of one name, such as forces, are errors of one size.
         ratio: cell of the companion over that of the mesh, above 1.
         at_least: group to others and the share [condition] of the mean error of each that is the least of its own.
 
@@ -70,6 +73,7 @@ def half_width(
         for name, rows in rows_of.items()
     }
     for name, rows in rows_of.items():
+        least[rows] = (own[rows] + SIBLINGS * shared[name]) / (1.0 + SIBLINGS)
         for other, share in (at_least or {}).get(name, ()):
             if other in shared:
                 least[rows] = np.maximum(least[rows], share**2 * shared[other])
@@ -84,7 +88,9 @@ def transonic(mach: np.ndarray) -> np.ndarray:
 
 def safety(mach: np.ndarray) -> np.ndarray:
     """Factor of safety at these Mach numbers."""
-    return np.where(transonic(mach), SAFETY_TRANSONIC, SAFETY)
+    mach = np.asarray(mach, dtype=float)
+    supersonic = (mach > 1.0) & ~transonic(mach) & (mach < HYPERSONIC)
+    return np.where(supersonic, SAFETY_SUPERSONIC, SAFETY)
 
 
 def _nothing(fine: np.ndarray, coarse: np.ndarray, group: Sequence[str]) -> np.ndarray:
