@@ -6,8 +6,9 @@ HORUS-2B, another vehicle, the Basic Finner, the HB-2 and the ONERA M6 wing have
 the sphere their exact solution. Every flow is solved once and kept as NetCDF in the folder of --flows: a run that was
 broken off goes on where it was, and one after a change of the estimate solves nothing (take a new folder for a new
 solver). docs/generate.py makes the page docs/uncertainty.md of the stored result. Exit code 1 when fewer than 90 % of
-the intervals hold the true value, or when the median interval is ten times as wide as the error: on any body, or for
-longitudinal or lateral coefficients or derivatives of all bodies or of those held out.
+the intervals hold the true value, or when the median interval is more than ten times as wide as the error: of all
+bodies or of those held out, in all and apart for longitudinal and lateral coefficients and derivatives; or on any one
+body with at least 20 values, in all, for the median of fewer means little (the sphere has 12 and counts in the others).
 
 At each Mach number: every coefficient at the base condition, with alpha and Mach number moved either way and in
 sideslip, and every stability, damping and (of the vehicles) control derivative. On cones: C_A of the forebody,
@@ -39,7 +40,7 @@ from spaceplane.aero.integrate import TOTAL
 from spaceplane.aero.uncertainty.arms import arms_of, floors
 from spaceplane.aero.uncertainty.companion import RATIO, coarser
 from spaceplane.aero.uncertainty.errors import WITH_ERROR, of_coefficients, of_derivatives
-from spaceplane.aero.uncertainty.grid import ORDER, SAFETY, half_width
+from spaceplane.aero.uncertainty.grid import ORDER, SAFETY, SAFETY_SUPERSONIC, half_width
 from spaceplane.flow.settings import FlowSettings
 from spaceplane.flow.solution import FlowConditions
 from spaceplane.mesh.settings import MeshSettings
@@ -50,12 +51,12 @@ CONES, SPHERE = "cones", "sphere"
 STORED = Path("docs/data/uncertainty.json")
 CONDITIONS_SHOWN = 6
 """Of each flight point: base, alpha+, alpha-, mach+, mach- and beta; the turning ones are in the derivatives."""
-CONE_LAYERS = 9
-"""Layers of the finest cells about the cones, the same on the companion."""
 LATERAL = ("CY", "Cl", "Cn", "C_Y", "C_n")
 NOTHING = 1e-5
 """Below this a value is zero by symmetry, and its error is no test."""
 LEAST_COVERED, WIDEST = 0.9, 10.0
+FEWEST = 20
+"""Values of one body that are enough to judge it by."""
 
 
 @dataclass(frozen=True)
@@ -157,34 +158,36 @@ def _sphere(flows: Path, fine: bool) -> list[Row]:
 
 
 def cone_rows(flows: Path) -> list[Row]:
-    """Rows of cones whose flow is conical, on the coarser setting of the validation case."""
+    """Rows of cones whose flow is conical, on the coarser mesh of the validation case."""
     rows = []
     for angle_deg in cones.HALF_ANGLES_DEG:
         angle = math.radians(angle_deg)
-        by_cell: dict[float, list[float]] = {}
+        by_mesh: dict[MeshSettings, list[float]] = {}
         for mach in cones.MACHS:
             if taylor_maccoll(mach, angle).surface_mach > 1.0:
-                by_cell.setdefault(cones.wall_cell(mach, angle, False), []).append(mach)
-        for cell, machs in by_cell.items():
-            rows += _cone(flows, angle, machs, cell)
+                by_mesh.setdefault(cones.mesh_plan(mach, angle, False).settings, []).append(mach)
+        for mesh, machs in by_mesh.items():
+            rows += _cone(flows, angle, machs, mesh)
     return rows
 
 
-def _cone(flows: Path, angle: float, machs: list[float], cell: float) -> list[Row]:
+def _cone(flows: Path, angle: float, machs: list[float], usual: MeshSettings) -> list[Row]:
     step = cones.STEP
     mach = np.repeat(machs, 3)
     alpha, beta = np.tile([0.0, step, 0.0], len(machs)), np.tile([0.0, 0.0, step], len(machs))
     conditions, reference = FlowConditions(mach, alpha, beta), reference_of(math.pi * math.tan(angle) ** 2, 1.0)
-    usual = MeshSettings(wall_cell=cell, far_field=2.0, wall_layers=CONE_LAYERS, growth_layers=1)
+    surface = bodies.cone(angle, tail=cones.TAIL)
     pair = []
-    for name, mesh in (("mesh", usual), ("companion", coarser(usual, cell))):
-        task = Task(bodies.cone(angle), mesh, conditions, reference, FlowSettings(iterations=ITERATIONS))
-        pair.append(kept(flows / f"cone_{math.degrees(angle):.0f}_{1.0 / cell:.0f}_{name}.nc", task))
+    for name, mesh in (("mesh", usual), ("companion", coarser(usual, usual.wall_cell))):
+        task = Task(surface, mesh, conditions, reference, FlowSettings(iterations=ITERATIONS))
+        found = kept(flows / f"cone_{math.degrees(angle):.0f}_{1.0 / usual.wall_cell:.0f}_{name}.nc", task)
+        # what is measured is the cone's first metre, not what holds its end
+        pair.append(found.sel(part=["forebody"]).assign_coords(part=[TOTAL]))
     along = np.array(machs)
     stated = of_coefficients(*pair, RATIO).sel(part=TOTAL)
     names = ("C_N_alpha", "C_Y_beta", "C_m_alpha", "C_n_beta")
     fine, coarse = (_cone_slopes(data.sel(part=TOTAL), step) for data in pair)
-    scales = ["lift", "side", "pitch", "lateral"]
+    scales = ["lift", "side", "pitch", "yaw"]
     widths = half_width(fine, coarse, along, scales, RATIO, floors(scales, arms_of(stated), along))
     rows = []
     for i, number in enumerate(machs):
@@ -248,6 +251,13 @@ def groups(rows: list[Row]) -> list[dict]:
     return found
 
 
+def misses(found: list[dict]) -> list[dict]:
+    """Of the groups that are judged, those whose intervals hold too little or are too wide."""
+    pooled = ("held out", "all")
+    judged = [one for one in found if one["case"] in pooled or (one["kind"] == "all" and one["values"] >= FEWEST)]
+    return [one for one in judged if one["covered"] < LEAST_COVERED or one["median_ratio"] > WIDEST]
+
+
 def main() -> int:
     """Solve what is missing, compare, print and keep."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -290,14 +300,17 @@ def main() -> int:
         "ratio": RATIO,
         "order": ORDER,
         "safety": SAFETY,
+        "safety_supersonic": SAFETY_SUPERSONIC,
         "meshes": meshes,
         "groups": found,
         "rows": [{k: round(v, 7) if isinstance(v, float) else v for k, v in asdict(row).items()} for row in rows],
     }
     if out is not None:
         out.write_text(json.dumps(document, indent=1, allow_nan=False) + "\n", encoding="utf-8")
-    judged = [one for one in found if one["kind"] == "all" or one["case"] in ("held out", "all")]
-    return int(any(one["covered"] < LEAST_COVERED or one["median_ratio"] > WIDEST for one in judged))
+    missed = misses(found)
+    for one in missed:
+        print(f"not as wanted: {one['case']}, {one['side']}, {one['kind']}", file=sys.stderr)
+    return int(bool(missed))
 
 
 if __name__ == "__main__":

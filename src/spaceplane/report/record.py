@@ -15,7 +15,7 @@ from spaceplane.aero.increments.add import INVISCID, WITH_SOURCES
 from spaceplane.aero.integrate import BY_SOURCE, COEFFICIENTS, PRESSURES, TOTAL, wetted_area
 from spaceplane.aero.uncertainty.accuracy import cells_needed, relative
 from spaceplane.aero.uncertainty.errors import OF_MESH, OF_STEP, error_record
-from spaceplane.aero.uncertainty.grid import LEVEL, ORDER, SAFETY
+from spaceplane.aero.uncertainty.grid import LEVEL, ORDER, SAFETY, SAFETY_SUPERSONIC
 from spaceplane.aero.uncertainty.settings import ITERATION, MESH
 from spaceplane.analysis.flight import PointAnalysis
 from spaceplane.analysis.found import Analysis
@@ -183,6 +183,7 @@ def uncertainty(analysis: Analysis) -> dict:
         "ratio": companion.ratio,
         "order": ORDER,
         "safety": SAFETY,
+        "safety_supersonic": SAFETY_SUPERSONIC,
         "wall_cell_m": companion.wall_cell,
         "cells": companion.cells,
         "conditions": len(companion.records),

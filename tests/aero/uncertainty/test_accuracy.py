@@ -9,7 +9,7 @@ import xarray as xr
 
 from spaceplane.aero.uncertainty.accuracy import Accuracy, refine, relative
 from spaceplane.aero.uncertainty.errors import of_coefficients
-from spaceplane.aero.uncertainty.grid import ORDER, SAFETY
+from spaceplane.aero.uncertainty.grid import ORDER, SAFETY_SUPERSONIC
 from spaceplane.aero.uncertainty.settings import FIRST_CELLS
 from spaceplane.errors import InputError
 
@@ -89,7 +89,7 @@ def test_the_errors_of_coefficients_are_those_of_mesh_and_iteration_together():
     fine, coarse = solved(mesh(0.5)), solved(mesh(1.0))
     fine["CL_spread"] = ("condition", np.full(2, 0.03))
     found = of_coefficients(fine, coarse, 2.0)
-    by_mesh = SAFETY * SLOPE * 0.5**ORDER
+    by_mesh = SAFETY_SUPERSONIC * SLOPE * 0.5**ORDER
     np.testing.assert_allclose(found.CL_mesh_error, by_mesh, rtol=0.05)
     np.testing.assert_allclose(found.CL_error, np.hypot(found.CL_mesh_error, 0.03))
     assert found.CY_error.values.max() == 0.0

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from spaceplane.aero.uncertainty.grid import ORDER, SAFETY, half_width
+from spaceplane.aero.uncertainty.grid import ORDER, SAFETY, SAFETY_SUPERSONIC, half_width
 
-MACH = np.array([0.8, 1.5, 2.5, 5.0])
-FACTOR = SAFETY / (2.0**ORDER - 1.0)  # on the difference between two meshes of which one is twice as coarse
+MACH = np.array([1.5, 2.0, 2.5, 4.0])
+FACTOR = SAFETY_SUPERSONIC / (2.0**ORDER - 1.0)  # on the difference between two meshes of which one is twice as coarse
 
 
 def values(exact, slope, cell, power=ORDER):
@@ -18,7 +18,7 @@ def test_errors_of_the_assumed_order_are_covered_by_the_safety_factor():
     for cell, ratio in ((0.25, 2.0), (0.1, 1.5)):
         fine, coarse = (values(exact, slope, h) for h in (cell, ratio * cell))
         found = half_width(fine, coarse, MACH, ["force"], ratio)
-        np.testing.assert_allclose(found, SAFETY * np.abs(fine - exact), rtol=1e-12)
+        np.testing.assert_allclose(found, SAFETY_SUPERSONIC * np.abs(fine - exact), rtol=1e-12)
 
 
 def test_errors_of_half_to_second_order_are_covered_too():
@@ -26,16 +26,32 @@ def test_errors_of_half_to_second_order_are_covered_too():
     for power in (0.5, 1.0, 2.0):
         fine, coarse = (values(exact, slope, h, power) for h in (0.25, 0.5))
         found = half_width(fine, coarse, MACH, ["force"], 2.0)
-        assert (np.abs(fine - exact) < found).all() and (found < 5.0 * SAFETY * np.abs(fine - exact)).all()
+        assert (np.abs(fine - exact) < found).all() and (found < 5.0 * SAFETY_SUPERSONIC * np.abs(fine - exact)).all()
 
 
 def test_a_group_is_off_by_no_less_than_its_share_of_another_and_only_where_it_has_one():
     fine = np.full((2, 2), 0.3)
     args = fine, fine + np.array([[0.001], [0.02]]), np.array([2.0, 2.0]), ["force", "moment"], 2.0
-    force, moment = half_width(*args, {"force": ("moment", np.array([0.25, 0.0]))})
+    force, moment = half_width(*args, {"force": [("moment", np.array([0.25, 0.0])), ("none", np.ones(2))]})
     assert force[0] == pytest.approx(0.25 * moment[0])
     np.testing.assert_array_equal(half_width(*args)[0], force[1])
     assert force[1] < 0.1 * moment[1]
+
+
+def test_of_several_ties_the_largest_holds():
+    fine = np.full((3, 1), 0.3)
+    args = fine, fine + np.array([[0.001], [0.02], [0.03]]), np.array([2.0]), ["force", "moment", "other"], 2.0
+    ties = [("moment", np.array([0.5])), ("other", np.array([0.5]))]
+    for order in (ties, ties[::-1]):
+        force, _, other = half_width(*args, {"force": order})[:, 0]
+        assert force == pytest.approx(0.5 * other)
+
+
+def test_in_supersonic_flow_the_factor_of_safety_is_smaller():
+    mach = np.array([0.5, 0.8, 1.2, 1.35, 4.9, 5.0, 20.0])
+    found = half_width(np.full((1, 7), 0.3), np.full((1, 7), 0.31), mach, ["force"], 2.0)[0]
+    np.testing.assert_allclose(found[[3, 4]], FACTOR * 0.01)
+    np.testing.assert_allclose(found[[0, 1, 2, 5, 6]] / found[3], SAFETY / SAFETY_SUPERSONIC)
 
 
 def test_the_estimate_falls_with_the_cell():
@@ -44,7 +60,7 @@ def test_the_estimate_falls_with_the_cell():
         half_width(values(exact, slope, h), values(exact, slope, 2 * h), MACH, ["force"], 2.0)[0, 0]
         for h in (0.5, 0.25, 0.1)
     ]
-    np.testing.assert_allclose(widths, SAFETY * 0.2 * np.array([0.5, 0.25, 0.1]) ** ORDER)
+    np.testing.assert_allclose(widths, SAFETY_SUPERSONIC * 0.2 * np.array([0.5, 0.25, 0.1]) ** ORDER)
 
 
 def test_a_difference_that_vanishes_by_chance_takes_its_neighbours():

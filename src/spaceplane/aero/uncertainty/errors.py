@@ -17,12 +17,15 @@ if TYPE_CHECKING:
 
 SCALES = {
     "lift": ("CL", "CN"),
-    "drag": ("CD", "CA", "CA_forebody", "CA_base"),
+    "drag": ("CD", "CA"),
+    "shares": ("CA_forebody", "CA_base"),
     "side": ("CY",),
     "pitch": ("Cm",),
-    "lateral": ("Cl", "Cn"),
+    "roll": ("Cl",),
+    "yaw": ("Cn",),
 }
-"""Coefficients whose errors are of one size: a base or a bow shock does to one what it does not to another."""
+"""Coefficients whose errors are of one size: forces with their shares. Rolling and yawing moments are not: the arms of
+fins about the axis of a slender body are a fifth of those about its middle."""
 WITH_ERROR = (*WITH_SPREAD, "CA_forebody", "CA_base")
 """Coefficients that have an error; the solver's final window tells the two shares of CA no more than of CA itself."""
 OF_MESH = "_mesh_error"

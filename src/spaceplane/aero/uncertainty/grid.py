@@ -3,13 +3,15 @@
 The form is that of the grid convergence index of Roache (J. Fluids Eng. 116, 1994): a value whose error falls with the
 power `ORDER` of the cell, and which differs by e from that on cells r times as large, is uncertain by
 
-    U = SAFETY |e| / (r^ORDER - 1).
+    U = F |e| / (r^ORDER - 1).
 
 With two meshes the order is assumed, not observed: 0.8, which is what HORUS-2B's coefficients show on average from
-wall cells of 0.5 to 0.08 m, with the shocks, edges and cut cells that a scheme of second order meets there. Roache's
-factor of safety for two grids is 3, which Eca and Hoekstra (J. Comput. Phys. 262, 2014) take too where data scatter.
-With it four fifths of HORUS-2B's longitudinal derivatives are held on the default mesh, whose companion has finer edges
-as well and differs less than meshes of equal cells do; with 4 it is nine in ten (docs/uncertainty.md).
+wall cells of 0.5 to 0.08 m, with the shocks, edges and cut cells that a scheme of second order meets there. The factor
+of safety is 4 near and below the speed of sound, where shocks stand on the wall and two meshes that misplace them alike
+agree better with each other than with the exact flow, and at hypersonic Mach numbers, where few cells lie between wall
+and shock. Between, where errors fall faster, it is calibrated as Xing and Stern (J. Fluids Eng. 132, 2010) do: 2.5, the
+smallest that leaves nine in ten of HORUS-2B's longitudinal and lateral coefficients and derivatives held (Roache's own
+for two grids is 3; docs/uncertainty.md has how often either holds the error).
 
 One difference may be small by chance while the error is not, so e is not taken alone. It is at least the root mean
 square of the differences at neighbouring Mach numbers, of the same quantity and, with less weight, of those that share
@@ -23,7 +25,11 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 ORDER = 0.8
-SAFETY = 4.0
+SAFETY, SAFETY_SUPERSONIC = 4.0, 2.5
+TRANSONIC = 0.3
+"""Largest distance of a transonic Mach number from one."""
+HYPERSONIC = 5.0
+"""Least hypersonic Mach number."""
 LEVEL = 0.95
 """Share of the intervals value +- U that are meant to hold the exact value."""
 MACH_WIDTH = 0.3
@@ -40,7 +46,7 @@ def half_width(
     mach: np.ndarray,
     group: Sequence[str],
     ratio: float,
-    at_least: Mapping[str, tuple[str, np.ndarray]] | None = None,
+    at_least: Mapping[str, Sequence[tuple[str, np.ndarray]]] | None = None,
 ) -> np.ndarray:
     """Half width of the 95 % interval about values on a mesh, as far as the mesh goes, in the values' own unit.
 
@@ -50,7 +56,7 @@ def half_width(
         mach: [condition] Mach number.
         group: [quantity] name of the scale: quantities of one name, such as forces, are errors of one size.
         ratio: cell of the companion over that of the mesh, above 1.
-        at_least: group to another one and the share [condition] of whose mean error is the least of its own.
+        at_least: group to others and the share [condition] of the mean error of each that is the least of its own.
 
     Returns:
         [quantity, condition]; NaN where either value is.
@@ -60,19 +66,31 @@ def half_width(
     there = np.isfinite(square) & ~_nothing(fine, coarse, group)
     near = np.exp(-0.5 * (np.log(mach[:, None] / mach[None, :]) / MACH_WIDTH) ** 2)
     own = _mean(square, there, near)
-    pooled = own.copy()
+    least = own.copy()
     rows_of = {name: [k for k, other in enumerate(group) if other == name] for name in group}
     shared = {
         name: np.where(there[rows], own[rows], 0.0).sum(axis=0) / np.maximum(there[rows].sum(axis=0), 1)
         for name, rows in rows_of.items()
     }
     for name, rows in rows_of.items():
-        pooled[rows] = (own[rows] + SIBLINGS * shared[name]) / (1.0 + SIBLINGS)
-        other, share = (at_least or {}).get(name, ("", 0.0))
-        if other in shared:
-            pooled[rows] = np.maximum(pooled[rows], share**2 * shared[other])
-    size = np.sqrt(np.where(there, np.maximum(square, pooled), square))
-    return SAFETY / (ratio**ORDER - 1.0) * size
+        least[rows] = (own[rows] + SIBLINGS * shared[name]) / (1.0 + SIBLINGS)
+        for other, share in (at_least or {}).get(name, ()):
+            if other in shared:
+                least[rows] = np.maximum(least[rows], share**2 * shared[other])
+    size = np.sqrt(np.where(there, np.maximum(square, least), square))
+    return safety(mach) / (ratio**ORDER - 1.0) * size
+
+
+def transonic(mach: np.ndarray) -> np.ndarray:
+    """Whether shocks may stand on the wall at these Mach numbers."""
+    return np.abs(np.asarray(mach, dtype=float) - 1.0) < TRANSONIC
+
+
+def safety(mach: np.ndarray) -> np.ndarray:
+    """Factor of safety at these Mach numbers."""
+    mach = np.asarray(mach, dtype=float)
+    supersonic = (mach > 1.0) & ~transonic(mach) & (mach < HYPERSONIC)
+    return np.where(supersonic, SAFETY_SUPERSONIC, SAFETY)
 
 
 def _nothing(fine: np.ndarray, coarse: np.ndarray, group: Sequence[str]) -> np.ndarray:
