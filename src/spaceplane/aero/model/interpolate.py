@@ -82,12 +82,12 @@ def is_node(axis: np.ndarray, value: float) -> bool:
     return bool(np.any(np.abs(inner - value) <= ROUND_OFF * np.maximum(1.0, np.abs(inner))))
 
 
-def interpolate(table: np.ndarray, places: Sequence[Place]) -> complex:
-    """Value of a table at places on all its axes; NaN where a node that counts is empty.
+def interpolate(table: np.ndarray, places: Sequence[Place]) -> complex | np.ndarray:
+    """Value of a table at places on its first axes; NaN where a node that counts is empty.
 
     Args:
         table: [node of the first axis, node of the second axis, ...] in any unit.
-        places: one per axis.
+        places: one for each of the first axes. What axes remain, the result has.
     """
     cell = table[tuple(slice(place.index, place.index + 2) for place in places)]
     for place in places:
@@ -98,7 +98,18 @@ def interpolate(table: np.ndarray, places: Sequence[Place]) -> complex:
             cell = cell[1]
         else:
             cell = cell[0] * (1 - place.weight) + cell[1] * place.weight
-    return cell  # type: ignore[return-value]
+    return cell
+
+
+def node_slope(axis: np.ndarray, values: np.ndarray, at: float) -> float:
+    """Slope of values [node] between the nodes of an axis, per unit of the axis (rad or Mach number).
+
+    At a node the mean of both sides, or the slope of the one that is known; NaN where none is.
+    """
+    quotients = np.diff(values) / np.diff(axis)
+    right, left = (locate(axis, at, "argument", side).index for side in SIDES)
+    known = [quotient for quotient in quotients[sorted({left, right})] if not np.isnan(quotient)]
+    return float(sum(known) / len(known)) if known else math.nan
 
 
 def in_user_units(quantity: str, value: float) -> str:

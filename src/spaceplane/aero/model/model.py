@@ -21,7 +21,16 @@ import numpy as np
 from spaceplane.aero.axes import FORCES_AND_MOMENTS
 from spaceplane.aero.model import move
 from spaceplane.aero.model.derivatives import Derivatives
-from spaceplane.aero.model.interpolate import SIDES, OutsideTables, Place, in_user_units, interpolate, is_node, locate
+from spaceplane.aero.model.interpolate import (
+    SIDES,
+    OutsideTables,
+    Place,
+    in_user_units,
+    interpolate,
+    is_node,
+    locate,
+    node_slope,
+)
 from spaceplane.errors import InputError, unknown_name
 from spaceplane.vehicle.controls import CONTROLS
 from spaceplane.vehicle.properties import ReferenceLengths
@@ -170,8 +179,8 @@ class AeroModel:
         place = dict(deflections or {})
         self._evaluate(mach, alpha, 0.0, (0.0, 0.0, 0.0), place)  # so that what is outside is named as itself
 
-        def at(mach: complex = mach, alpha: complex = alpha, side: str = "right", **moved: complex) -> dict:
-            return self._evaluate(mach, alpha, 0.0, (0.0, 0.0, 0.0), {**place, **moved}, side)
+        def at(mach: complex = mach, alpha: complex = alpha, side: str = "right") -> dict:
+            return self._evaluate(mach, alpha, 0.0, (0.0, 0.0, 0.0), place, side)
 
         with_alpha = _slope(lambda x, side: at(alpha=x, side=side), alpha, self.alpha)
         with_mach = _slope(lambda x, side: at(mach=x, side=side), mach, self.mach)
@@ -180,10 +189,9 @@ class AeroModel:
         rest = {name: self._value(name, self.slopes[name], nodes, mach, alpha).real for name in self.slopes}
         controls = {}
         for name, surface in self.surfaces.items():
-            turned = _slope(
-                lambda x, side, name=name: at(side=side, **{name: x}), place.get(name, 0.0), surface.deflection
-            )
-            controls |= {f"{coefficient}_{name}": turned[coefficient] for coefficient in surface.increments}
+            for coefficient, values in self.increments(name, mach, alpha).items():
+                slope = node_slope(surface.deflection, values, place.get(name, 0.0))
+                controls[f"{coefficient}_{name}"] = self._known(f"{coefficient} of {name}", slope, mach, alpha)
         lateral = {"CY_beta": 0.0, "Cl_beta": 0.0, "Cn_beta": 0.0}
         return Derivatives(**{**static, **lateral, **rest}, controls=controls)
 
@@ -227,6 +235,23 @@ class AeroModel:
         if surface not in self.surfaces:
             raise InputError(unknown_name("control surface of the model", surface, self.surfaces))
         return self.surfaces[surface].limits
+
+    def increments(self, surface: str, mach: float, alpha: float) -> dict[str, np.ndarray]:
+        """What a surface adds at each deflection of its table: coefficient -> [deflection], NaN where unknown.
+
+        Args:
+            surface: control surface.
+            mach: Mach number.
+            alpha: angle of attack, rad.
+
+        Raises:
+            OutsideTables: Mach number or angle of attack outside the tables.
+            InputError: the model does not have the surface.
+        """
+        self.limits(surface)
+        nodes = self._nodes(mach, alpha, "right")
+        tables = self.surfaces[surface].increments
+        return {name: interpolate(np.moveaxis(table, 0, -1), nodes) for name, table in tables.items()}
 
     def _nodes(self, mach: complex, alpha: complex, side: str) -> tuple[Place, Place]:
         return locate(self.alpha, alpha, "alpha", side), locate(self.mach, mach, "mach", side)
@@ -275,7 +300,9 @@ class AeroModel:
         return {}
 
     def _value(self, what: str, table: np.ndarray, places: tuple[Place, ...], mach: complex, alpha: complex) -> complex:
-        value = interpolate(table, places)
+        return self._known(what, interpolate(table, places), mach, alpha)
+
+    def _known(self, what: str, value: complex, mach: complex, alpha: complex) -> complex:
         if np.isnan(value):
             where = f"Mach {in_user_units('mach', mach.real)}, alpha {in_user_units('alpha', alpha.real)}"
             message = f"{what}: the tables of {self.name} are empty at {where}"
