@@ -104,7 +104,7 @@ def test_surfaces_by_name():
     with pytest.raises(InputError, match=r"rudder_left = 5.7.* deg: linear has no table of it"):
         bare.coefficients(**POINT, deflections={"rudder_left": 0.1})
     assert bare.coefficients(**POINT, deflections={"rudder_left": 0.0}) == bare.coefficients(**POINT)
-    assert {"CY_rudder_left", "Cl_body_flap"} <= set(bare.unknown())
+    assert "CY_rudder_left" in bare.unknown() and "Cl_body_flap" not in bare.unknown()
     assert "Cn_beta" in linear.model(slopes={}).unknown() and "Cn_beta" not in linear.model().unknown()
 
 

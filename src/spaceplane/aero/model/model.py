@@ -19,6 +19,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from spaceplane.aero.axes import FORCES_AND_MOMENTS
+from spaceplane.aero.integrate import LATERAL
 from spaceplane.aero.model import move
 from spaceplane.aero.model.derivatives import Derivatives
 from spaceplane.aero.model.interpolate import (
@@ -215,7 +216,10 @@ class AeroModel:
         return replace(self, reference=reference, base=base, surfaces=surfaces, slopes=slopes)
 
     def unknown(self) -> tuple[str, ...]:
-        """What the model does not know and takes as zero, such as "Cl_p" or "Cl_elevon_left"."""
+        """What the model does not know and takes as zero, such as "Cl_p" or "Cl_elevon_left".
+
+        A body flap in the plane of symmetry has no lateral effect to be known.
+        """
         return (
             *(name for name in SLOPES if name not in self.slopes),
             *(
@@ -223,6 +227,7 @@ class AeroModel:
                 for name in CONTROLS
                 for coefficient in FORCES_AND_MOMENTS
                 if name not in self.surfaces or coefficient not in self.surfaces[name].increments
+                if not (name == "body_flap" and coefficient in LATERAL)
             ),
         )
 
