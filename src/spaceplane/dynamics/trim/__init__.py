@@ -1,0 +1,1 @@
+"""Deflections and attitudes that balance the moments, within limits, or the reason why there are none."""
