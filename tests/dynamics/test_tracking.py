@@ -12,6 +12,7 @@ from spaceplane.dynamics.tracking import follow, interpolated
 from spaceplane.errors import InputError
 
 from . import horus
+from .test_modes import B747_LATERAL
 
 MIX = np.array([[1.0, 2.0, 0.3, 0.1], [0.0, 1.0, 0.5, -0.4], [0.2, 0.0, 1.0, 0.6], [0.3, -0.2, 0.1, 1.0]])
 
@@ -183,6 +184,28 @@ def test_bank_couples_lateral_and_longitudinal_motion():
         for shift, names in ((-1e-3, event.before), (1e-3, event.after)):
             modes = identify(horus_system(bank_deg=event.parameter + shift))
             assert min(modes, key=lambda m: abs(m.eigenvalue - event.eigenvalue)).name == names[0]
+
+
+def test_yaw_damper_of_the_boeing_747():
+    """Rudder from yaw rate: the Dutch roll gains damping up to critical and splits, the spiral speeds up; every point
+    has the eigenvalues of its matrix. Rudder column of the same source as A (Heffley and Jewell 1972)."""
+    rudder, rate = np.array([0.00729, -0.475, 0.153, 0.0]), np.array([0.0, 1.0, 0.0, 0.0])
+
+    def system(gain):
+        return from_matrix(B747_LATERAL + gain * np.outer(rudder, rate), ("beta", "r", "p", "phi"))
+
+    branches = follow(system, np.linspace(0.0, 6.0, 13), "gain")
+    labels = branches.dataset["branch"].values.tolist()
+    assert labels == ["Dutch roll (upper)", "Dutch roll (lower)", "roll mode", "spiral"]
+    values = branches.eigenvalues()
+    for gain, row in zip(branches.dataset["gain"].values, values, strict=True):
+        exact = np.linalg.eigvals(system(gain).A)
+        assert np.abs(row[:, None] - exact[None, :]).min(axis=0).max() < 1e-9
+    damping = -values[:, 0].real / np.abs(values[:, 0])
+    early = branches.dataset["gain"].values <= 1.0
+    assert (np.diff(damping[early]) > 0).all()
+    assert np.abs(np.diff(values, axis=0)).max() < 0.6
+    assert values[-1].imag[2] == 0 or {"merge", "split"} & {e.kind for e in branches.events}
 
 
 def test_interpolated_family():
