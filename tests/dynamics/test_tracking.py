@@ -187,8 +187,8 @@ def test_bank_couples_lateral_and_longitudinal_motion():
 
 
 def test_yaw_damper_of_the_boeing_747():
-    """Rudder from yaw rate: the Dutch roll gains damping up to critical and splits, the spiral speeds up; every point
-    has the eigenvalues of its matrix. Rudder column of the same source as A (Heffley and Jewell 1972)."""
+    """Rudder from yaw rate: the damping ratio of the Dutch roll peaks at 0.45 with a gain of 2.85, as the yaw damper
+    example of the MATLAB control toolbox finds (A and rudder column after Heffley and Jewell 1972)."""
     rudder, rate = np.array([0.00729, -0.475, 0.153, 0.0]), np.array([0.0, 1.0, 0.0, 0.0])
 
     def system(gain):
@@ -202,10 +202,11 @@ def test_yaw_damper_of_the_boeing_747():
         exact = np.linalg.eigvals(system(gain).A)
         assert np.abs(row[:, None] - exact[None, :]).min(axis=0).max() < 1e-9
     damping = -values[:, 0].real / np.abs(values[:, 0])
-    early = branches.dataset["gain"].values <= 1.0
-    assert (np.diff(damping[early]) > 0).all()
-    assert np.abs(np.diff(values, axis=0)).max() < 0.6
-    assert values[-1].imag[2] == 0 or {"merge", "split"} & {e.kind for e in branches.events}
+    best = int(np.argmax(damping))
+    assert damping[best] == pytest.approx(0.45, abs=0.01)
+    assert branches.dataset["gain"].values[best] == pytest.approx(2.85, abs=0.3)
+    assert (np.diff(values[:, 3].real) < 0).all()  # the spiral only speeds up
+    assert {e.kind for e in branches.events} == {"name"}
 
 
 def test_interpolated_family():
