@@ -33,6 +33,7 @@ ORDER = (
     "aero",
     "dynamics",
     "qualities",
+    "control",
     "analysis",
     "report",
     "pipeline",

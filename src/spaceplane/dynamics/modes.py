@@ -16,9 +16,9 @@ from spaceplane.dynamics.mode_names import PITCH_APERIODIC, Naming, name_mode, w
 from spaceplane.dynamics.statespace import StateSpace
 
 # An imaginary part below this fraction of the modulus is round-off of a double real eigenvalue.
-_REAL_TOLERANCE = 1e-8
+REAL_TOLERANCE = 1e-8
 # An eigenvalue below this fraction of the largest is zero: beyond what double precision can tell.
-_NEUTRAL_TOLERANCE = 1e-11
+NEUTRAL_TOLERANCE = 1e-11
 
 
 @dataclass(frozen=True)
@@ -78,9 +78,9 @@ def identify(system: StateSpace) -> tuple[Mode, ...]:
     found = []
     for k in np.argsort(-np.abs(values), kind="stable"):
         value = complex(values[k])
-        if abs(value.imag) <= _REAL_TOLERANCE * abs(value):
+        if abs(value.imag) <= REAL_TOLERANCE * abs(value):
             value = complex(value.real, 0.0)
-        if abs(value) <= _NEUTRAL_TOLERANCE * largest:
+        if abs(value) <= NEUTRAL_TOLERANCE * largest:
             value = 0j
         if value.imag < 0:
             continue
