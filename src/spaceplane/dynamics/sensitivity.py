@@ -165,6 +165,33 @@ def sensitivities(
     return tuple(found)
 
 
+def of_model(
+    point: FlightPoint,
+    mass: MassProperties,
+    reference: ReferenceLengths,
+    derivatives: Derivatives,
+    A: np.ndarray,
+    modes: Sequence[Mode],
+    form: str = "rigid-body",
+    density_gradient: bool = True,
+    gyroscopic: bool = True,
+) -> tuple[ModeSensitivity, ...]:
+    """Sensitivity of every mode to every one of `PARAMETERS`.
+
+    Args:
+        point: flight point with CL and CD.
+        mass: kg, kg m2.
+        reference: m2, m.
+        derivatives: per rad and per unit Mach number.
+        A: [state, state] of the linear model.
+        modes: its modes.
+        form, density_gradient, gyroscopic: as A was made with.
+    """
+    slopes = matrix_slopes(point, mass, reference, derivatives, PARAMETERS, form, density_gradient, gyroscopic)
+    values = [value_of(name, point, derivatives) for name in PARAMETERS]
+    return sensitivities(A, modes, slopes, PARAMETERS, values)
+
+
 def eigenvalue_error(one: ModeSensitivity, covariance: np.ndarray) -> tuple[float, float]:
     """Standard deviations, 1/s, of real and imaginary part of an eigenvalue to first order.
 

@@ -19,7 +19,7 @@ from spaceplane.dynamics.derivatives import Derivatives
 from spaceplane.errors import InputError
 from spaceplane.qualities import limits
 from spaceplane.qualities.airframe import Airframe
-from spaceplane.qualities.verdict import Context, Verdict
+from spaceplane.qualities.verdict import AIRFRAME, Context, Verdict
 from spaceplane.vehicle.properties import MassProperties
 
 PER_DEGREE = math.pi / 180.0
@@ -150,7 +150,7 @@ def _verdict(key: str, quantity: str, context: Context, **values: object) -> Ver
     """A verdict whose paragraph is the source of the criterion."""
     entry = limits.departure()[key]
     return Verdict(
-        "airframe",
+        AIRFRAME,
         entry["title"],
         quantity,
         entry["source"],

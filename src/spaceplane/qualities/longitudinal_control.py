@@ -8,11 +8,10 @@ from spaceplane.environment.constants import STANDARD_GRAVITY
 from spaceplane.qualities import limits
 from spaceplane.qualities.airframe import Airframe
 from spaceplane.qualities.gradients import LoadGradient, SpeedGradient, load_gradient, pitches, speed_gradient
-from spaceplane.qualities.verdict import BELOW, Context, Level, Verdict, level_of_most, most_text
+from spaceplane.qualities.verdict import AIRFRAME, BELOW, Context, Level, Verdict, level_of_most, most_text
 
 KNOT = 1852.0 / 3600.0  # m/s
 NO_ELEVATOR = "not applicable: no elevator with a pitching moment is known"
-AIRFRAME = "airframe"
 
 
 def verdicts(airframe: Airframe, context: Context) -> list[Verdict]:

@@ -28,7 +28,7 @@ from spaceplane.qualities import limits
 from spaceplane.qualities.airframe import Airframe
 from spaceplane.qualities.assess import assess, load_factor_slope
 from spaceplane.qualities.assess_airframe import assess_airframe
-from spaceplane.qualities.verdict import Verdict
+from spaceplane.qualities.verdict import AIRFRAME, Verdict
 
 NORMAL_95 = 1.959963984540054  # half width of the 95 % interval over the standard deviation
 METHODS = ("sampling", "first-order")
@@ -377,7 +377,7 @@ def _outlook(verdict: Verdict, outcomes: Sequence[tuple[str, Assessed]]) -> Outl
     grown = Counter(
         name for found, one in outcomes if found == "not applicable" for name in _growing(one.modes, verdict.paragraph)
     )
-    ofmode = verdict.mode != "airframe"
+    ofmode = verdict.mode != AIRFRAME
     return Outlook(
         verdict=verdict,
         probabilities=shares,

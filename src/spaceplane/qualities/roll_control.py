@@ -19,6 +19,7 @@ from spaceplane.errors import InputError
 from spaceplane.qualities import limits
 from spaceplane.qualities.airframe import Airframe
 from spaceplane.qualities.verdict import (
+    AIRFRAME,
     BELOW,
     Context,
     Level,
@@ -158,7 +159,7 @@ def verdicts(airframe: Airframe, system: StateSpace, context: Context) -> list[V
     response = roll_response(system, limit) if known and limit > 0 else None
     if response is None:
         note = NO_AILERON if limit > 0 else "not applicable: the elevator leaves no aileron"
-        return [context.verdict(key, "airframe", quantity, applicable=False, note=note) for key, quantity in quantities]
+        return [context.verdict(key, AIRFRAME, quantity, applicable=False, note=note) for key, quantity in quantities]
     wanted = requirement(context, airframe.speed_range)
     return [
         _oscillation(response, context),
@@ -172,7 +173,7 @@ def _oscillation(response: RollResponse, context: Context) -> Verdict:
     value = response.oscillation()
     return context.verdict(
         "roll_rate_oscillation",
-        "airframe",
+        AIRFRAME,
         "roll rate at first minimum over first peak",
         value=value,
         limits=least_text(lows),
@@ -188,7 +189,7 @@ def _sideslip(
     quantity = f"{side} sideslip per k"
     if wanted is None:
         note = "not applicable: table IX of class IV is not in the data"
-        return context.verdict("sideslip_excursion", "airframe", quantity, applicable=False, note=note)
+        return context.verdict("sideslip_excursion", AIRFRAME, quantity, applicable=False, note=note)
     angle, times = wanted
     highs = limits.specification()["sideslip_excursion"][context.category][side]
     window = max(LEAST_WINDOW, response.half_period or 0.0)
@@ -202,7 +203,7 @@ def _sideslip(
     value = excursion / ratios[0] if ratios[0] > 0 else None
     return context.verdict(
         "sideslip_excursion",
-        "airframe",
+        AIRFRAME,
         quantity,
         value=value,
         unit="deg",
@@ -223,7 +224,7 @@ def _time_to_bank(
 ) -> Verdict:
     if wanted is None:
         note = "not applicable: table IX of class IV is not in the data"
-        return context.verdict("roll_control", "airframe", "time to bank", applicable=False, note=note)
+        return context.verdict("roll_control", AIRFRAME, "time to bank", applicable=False, note=note)
     angle, highs = wanted
     quantity = f"time to bank by {math.degrees(angle):.0f} deg"
     value = response.time_to_bank(angle)
@@ -235,7 +236,7 @@ def _time_to_bank(
         notes.append("rolls against the aileron" if reverses else f"not within {response.time[-1]:.3g} s")
     return context.verdict(
         "roll_control",
-        "airframe",
+        AIRFRAME,
         quantity,
         value=value,
         unit="s",

@@ -16,7 +16,7 @@ import math
 import numpy as np
 
 from spaceplane.qualities.airframe import Airframe
-from spaceplane.qualities.verdict import Context, Verdict
+from spaceplane.qualities.verdict import AIRFRAME, Context, Verdict
 
 RULES = (
     # criterion, quantity with controls, derivative without them, sign wanted of it
@@ -55,7 +55,7 @@ def verdicts(airframe: Airframe, context: Context) -> list[Verdict]:
     return [
         context.verdict(
             criterion,
-            "airframe",
+            AIRFRAME,
             quantity,
             value=value,
             unit="deg/deg" if criterion == "sideslip_force" else "1/rad",
@@ -71,7 +71,7 @@ def verdicts(airframe: Airframe, context: Context) -> list[Verdict]:
 def _of_sign(context: Context, criterion: str, name: str, sign: float, value: float) -> Verdict:
     return context.verdict(
         criterion,
-        "airframe",
+        AIRFRAME,
         f"sign of C_{name[1:]}",
         value=value,
         unit="1/rad",

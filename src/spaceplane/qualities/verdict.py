@@ -9,6 +9,7 @@ from spaceplane.dynamics.modes import Mode
 from spaceplane.qualities import limits
 
 BELOW = "below 3"
+AIRFRAME = "airframe"  # in place of a mode
 Level = int | str | None
 
 
