@@ -27,6 +27,7 @@ from spaceplane.qualities.probability import (
     NORMAL_95,
     Uncertainty,
     assess_all,
+    mirror_correlation,
     outcome,
     outlooks,
     wilson_half_width,
@@ -222,3 +223,17 @@ def test_bad_uncertainty(half_width, correlation, match):
 def test_bad_input(change, match):
     with pytest.raises(InputError, match=match):
         outlooks(airframe(), **{"uncertainty": Uncertainty({"Cn_beta": 0.1}), **change})
+
+
+def test_errors_of_mirrored_surfaces_are_one_error():
+    """The elevator of two mirrored elevons is then as uncertain as both together; the aileron's C_m not at all."""
+    pair = {"Cm_elevon_left": -0.05, "Cm_elevon_right": -0.05, "Cl_elevon_left": 0.02, "Cl_elevon_right": -0.02}
+    derivatives, half = horus.derivatives(**pair), dict.fromkeys(pair, 0.01)
+    found = mirror_correlation(derivatives, half)
+    assert found == {("Cl_elevon_left", "Cl_elevon_right"): -1.0, ("Cm_elevon_left", "Cm_elevon_right"): 1.0}
+    u = Uncertainty(half, found)
+    draws = dict(zip(u.names, u.draw(300, 0).T, strict=True))
+    assert np.allclose(draws["Cm_elevon_left"], draws["Cm_elevon_right"], atol=1e-12)
+    assert np.allclose(draws["Cl_elevon_left"], -draws["Cl_elevon_right"], atol=1e-12)
+    half["Cl_elevon_right"] = 0.02
+    assert ("Cl_elevon_left", "Cl_elevon_right") not in mirror_correlation(derivatives, half)

@@ -19,7 +19,7 @@ from spaceplane.environment.validity import Validity, assess_validity
 from spaceplane.qualities.airframe import Airframe
 from spaceplane.qualities.assess import Verdict, assess, load_factor_slope
 from spaceplane.qualities.assess_airframe import assess_airframe
-from spaceplane.qualities.probability import Outlook, Uncertainty, outlooks
+from spaceplane.qualities.probability import Outlook, Uncertainty, mirror_correlation, outlooks
 from spaceplane.vehicle.presets import Vehicle
 
 if TYPE_CHECKING:
@@ -27,7 +27,6 @@ if TYPE_CHECKING:
 
 SAMPLES = 1000
 """Draws of the derivatives at each flight point: probabilities within 0.03."""
-_MIRRORED = (("elevon_left", "elevon_right"), ("rudder_left", "rudder_right"))
 
 
 @dataclass(frozen=True)
@@ -132,10 +131,7 @@ def _trim(base: xr.Dataset, index: int, settings: AnalyseSettings) -> tuple[floa
 
 
 def _uncertainty(base: xr.Dataset, derivatives: xr.Dataset, index: int, known: Derivatives) -> Uncertainty | None:
-    """Stated errors of the derivatives, of C_L and of C_D as half widths of 95 % intervals; None where none is above 0.
-
-    Derivatives of a surface and of its mirror image come from one solution: their errors are one error.
-    """
+    """Stated errors of the derivatives, C_L and C_D as half widths of 95 % intervals; None where none is above 0."""
     half_width = {}
     for name in (*PARAMETERS, *known.controls):
         source, label = (base, f"{name}_error") if name in AT_POINT else (derivatives, f"{name}_error")
@@ -143,11 +139,4 @@ def _uncertainty(base: xr.Dataset, derivatives: xr.Dataset, index: int, known: D
             error = float(source[label][index])
             if math.isfinite(error) and error > 0:
                 half_width[name] = error
-    correlation = {}
-    for coefficient in COEFFICIENTS:
-        for left, right in (tuple(f"{coefficient}_{surface}" for surface in pair) for pair in _MIRRORED):
-            if left in half_width and right in half_width:
-                a, b = known.controls[left], known.controls[right]
-                if math.isclose(abs(a), abs(b), rel_tol=1e-9) and a * b:
-                    correlation[left, right] = math.copysign(1.0, a * b)
-    return Uncertainty(half_width, correlation) if half_width else None
+    return Uncertainty(half_width, mirror_correlation(known, half_width)) if half_width else None

@@ -19,6 +19,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from spaceplane.dynamics.derivatives import COEFFICIENTS, PAIRS, Derivatives
 from spaceplane.dynamics.linearise import FORMS, linearise
 from spaceplane.dynamics.modes import Mode, identify
 from spaceplane.dynamics.sensitivity import PARAMETERS, eigenvalue_slopes, matrix_slopes, moved_by
@@ -133,13 +134,13 @@ class Outlook:
     def text(self) -> str:
         """Such as `level 2 with 87 % (level 1: 11 %, not applicable: 2 %)`."""
         ranked = sorted(self.probabilities.items(), key=lambda item: -item[1])
-        named = [(f"level {name}" if name in "123" else name, _per_cent(share)) for name, share in ranked]
+        named = [(f"level {name}" if name in "123" else name, per_cent(share)) for name, share in ranked]
         first, rest = named[0], named[1:]
         text = f"{first[0]} with {first[1]}"
         if rest:
             text += f" ({', '.join(f'{name}: {share}' for name, share in rest)})"
         if self.instead and self.probabilities.get("not applicable", 0.0) > 0:
-            grown = ", ".join(f"{name} with {_per_cent(share)}" for name, share in self.instead.items())
+            grown = ", ".join(f"{name} with {per_cent(share)}" for name, share in self.instead.items())
             text += f"; instead {grown}"
         return text
 
@@ -226,6 +227,28 @@ def outlooks(
 
     judge = anew if method == "sampling" else _first_order(airframe, uncertainty, nominal, *options)
     return _collect(nominal, [judge(deviation) for deviation in draws])
+
+
+def mirror_correlation(derivatives: Derivatives, half_width: Mapping[str, float]) -> dict[tuple[str, str], float]:
+    """Correlations of control derivatives whose surface is the mirror image of another: their errors are one error.
+
+    Args:
+        derivatives: per rad.
+        half_width: of the derivatives, per rad.
+
+    Returns:
+        1 or -1 by the sign of the pair, for pairs of equal size with half widths of equal size.
+    """
+    found = {}
+    for coefficient in COEFFICIENTS:
+        for left, right, _ in PAIRS.values():
+            names = f"{coefficient}_{left}", f"{coefficient}_{right}"
+            if set(names) <= set(half_width) & set(derivatives.controls):
+                a, b = (derivatives.controls[name] for name in names)
+                alike = math.isclose(abs(a), abs(b), rel_tol=1e-6)
+                if alike and a != 0 and math.isclose(half_width[names[0]], half_width[names[1]], rel_tol=1e-6):
+                    found[names] = math.copysign(1.0, a * b)
+    return found
 
 
 def wilson_half_width(share: float, count: int) -> float:
@@ -400,5 +423,8 @@ def _growing(modes: Sequence[Mode], paragraph: str) -> set[str]:
     }
 
 
-def _per_cent(share: float) -> str:
+def per_cent(share: float) -> str:
+    """A probability, ratio, as text; 100 % is said of what is certain only."""
+    if 0.995 <= share < 1.0:
+        return "> 99 %"
     return f"{100 * share:.0f} %" if share >= 0.01 else f"{100 * share:.1f} %"

@@ -13,6 +13,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from spaceplane.qualities.probability import per_cent
 from spaceplane.report.flight_point import LEVEL_CSS, level_of, time_text, worst_levels
 from spaceplane.report.likelihood import outcome_chip
 from spaceplane.report.names import stability
@@ -190,7 +191,7 @@ def _outcome(verdict: dict | None) -> Text:
 def _share(verdict: dict | None, outcome: str) -> str:
     """How likely an outcome is, where others are possible."""
     found = (verdict or {}).get("probabilities") or {}
-    return f", {100 * found[outcome]:.0f} %" if len(found) > 1 and outcome in found else ""
+    return f", {per_cent(found[outcome])}" if len(found) > 1 and outcome in found else ""
 
 
 def print_modes(record: dict, console: Console | None = None) -> None:
