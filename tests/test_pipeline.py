@@ -87,7 +87,10 @@ def test_result_holds_the_whole_chain(written):
         assert np.shape(point["A"]) == (9, 9)
         assert np.shape(point["B"])[0] == 9
         assert {"elevon_left", "body_flap"} <= set(point["inputs"])
-        assert point["modes"] and point["verdicts"]
+        assert point["modes"] and point["verdicts"] and point["airframe_verdicts"]
+        for verdict in (*point["verdicts"], *point["airframe_verdicts"]):
+            assert sum(verdict["probabilities"].values()) == pytest.approx(1.0)
+        assert all(min(mode["eigenvalue_error"]) >= 0 and mode["drivers"] for mode in point["modes"])
         parts = point["coefficients_by_part"]
         for name in ("CL", "CD", "CY", "Cl", "Cm", "Cn"):
             total = point["coefficients"][name]

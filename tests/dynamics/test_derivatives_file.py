@@ -150,3 +150,44 @@ def test_missing_file(tmp_path):
         derivatives_file.read(tmp_path / "none.toml")
     with pytest.raises(InputError, match="cannot be read"):
         derivatives_file.read(tmp_path)
+
+
+EXAMPLE_CONTENT = tomllib.loads(EXAMPLE.read_text(encoding="utf-8"))
+UNCERTAIN = {"Cn_beta": 0.0005, "Cl_beta": 0.0003, "Cm_M": 0.001, "CL": 0.02}
+
+
+def uncertain(**table):
+    return {**EXAMPLE_CONTENT, "uncertainty": {**UNCERTAIN, **table}}
+
+
+def test_uncertainty_is_read_in_the_unit_of_the_derivatives():
+    case = derivatives_file.from_tables(uncertain(correlation=[["Cn_beta", "Cl_beta", -0.5]], samples=150, seed=4))
+    assert case.uncertainty["Cn_beta"] == pytest.approx(0.0005 * 180 / np.pi)
+    assert (case.uncertainty["Cm_M"], case.uncertainty["CL"]) == (0.001, 0.02)  # no angles
+    assert (case.correlation, case.samples, case.seed) == ({("Cn_beta", "Cl_beta"): -0.5}, 150, 4)
+    record = analyse_modes(case)
+    json.dumps(record, allow_nan=False)
+    for verdict in (*record["verdicts"], *record["airframe_verdicts"]):
+        assert sum(verdict["probabilities"].values()) == pytest.approx(1.0)
+        assert verdict["samples"] == 150 and " with " in verdict["probability_text"]
+    lateral = next(m for m in record["modes"] if m["eigenvalue"][1] > 0.5)
+    assert lateral["eigenvalue_error"][1] > 0 and lateral["drivers"][0]["parameter"] in ("Cl_beta", "Cn_beta")
+    plain = analyse_modes(derivatives_file.from_tables(EXAMPLE_CONTENT))
+    assert all(v["probabilities"] is None for v in plain["verdicts"]) and plain["modes"][0]["drivers"]
+
+
+@pytest.mark.parametrize(
+    ("table", "match"),
+    [
+        ({"Cn_beta": -1.0}, r"\[uncertainty\] Cn_beta"),
+        ({"Cn_betta": 1.0}, "Cn_beta"),
+        ({"Cl_aileron": 0.1}, "has no Cl_aileron"),
+        ({"samples": 0}, "samples"),
+        ({"seed": 1.5}, "seed"),
+        ({"correlation": [["Cn_beta", "Cl_r", 0.5]]}, "correlation"),
+        ({"correlation": [["Cn_beta", "Cl_beta", 2.0]]}, "correlation"),
+    ],
+)
+def test_bad_uncertainty_is_refused(table, match):
+    with pytest.raises(InputError, match=match):
+        derivatives_file.from_tables(uncertain(**table))

@@ -94,6 +94,25 @@ def verdict(mode_name: str, criterion: str, quantity: str, paragraph: str, value
     }  # fmt: skip
 
 
+def airframe_verdict(quantity: str, paragraph: str, value, limits: dict, level=None, met=None, chances=None) -> dict:
+    """A verdict on the airframe with its probabilities."""
+    applicable = level is not None or met is not None
+    return verdict("airframe", quantity, quantity, paragraph, value, level, limits) | {
+        "applicable": applicable, "met": met, "note": "" if applicable else "not applicable: no elevator is known",
+        **certain(chances or {"not applicable": 1.0}),
+    }  # fmt: skip
+
+
+def certain(chances: dict) -> dict:
+    """Probabilities with the text of the greatest."""
+    first = max(chances, key=chances.get)
+    name = f"level {first}" if first in "123" else first
+    return {
+        "probabilities": chances, "probability_error": 0.02, "samples": 1000,
+        "probability_text": f"{name} with {100 * chances[first]:.0f} %",
+    }  # fmt: skip
+
+
 def convergence(label: str, mach: float, alpha: float, beta: float, verdict_name: str = "converged") -> dict:
     count = 60
     k = np.arange(count)
@@ -166,7 +185,31 @@ def flight_point(name: str, mach: float, altitude: float, alpha: float) -> dict:
             verdict("short period", "short period damping", "damping ratio", "3.2.2.1.2", None, None, {},
                     "not applicable: aperiodic. Instead aperiodic pitch divergence: doubles in 0.69 s."),
         ],
+        "airframe_verdicts": [
+            airframe_verdict("time to bank by 30 deg", "3.3.4", 2.6, {"1": "<= 2", "2": "<= 3.3", "3": "<= 5"}, 2),
+            airframe_verdict("C_n_beta,dyn", "Moul and Paulson", 0.0022, {"met": "> 0"}, met=True),
+            airframe_verdict("nose-up elevator per load factor", "3.2.2.2", None, {}),
+        ],
         "convergence": [convergence(*row) for row in labels],
+    }  # fmt: skip
+
+
+def with_uncertainty(point: dict) -> dict:
+    """The flight point with what stated errors of derivatives add: errors and drivers of modes, probabilities."""
+    driver = {"slope": [0.1, 0.4], "per_percent": [1e-4, 4e-4], "error": [0.004, 0.02], "share": 0.9}
+    lateral = point["modes"][0] | {
+        "eigenvalue_error": [0.006, 0.021],
+        "drivers": [driver | {"parameter": "Cl_beta"}, driver | {"parameter": "Cn_beta", "share": 0.1}],
+    }
+    first, *others = point["verdicts"]
+    likely = certain({"1": 0.11, "2": 0.87, "not applicable": 0.02})
+    return point | {
+        "modes": [lateral, *point["modes"][1:]],
+        "verdicts": [first | likely, *(v | certain({str(v["level"]): 1.0}) for v in others)],
+        "airframe_verdicts": [
+            airframe_verdict("C_n_beta,dyn", "Moul and Paulson", 0.0022, {"met": "> 0"}, met=True,
+                             chances={"met": 0.8, "not met": 0.2}),
+        ],
     }  # fmt: skip
 
 

@@ -12,14 +12,21 @@ from spaceplane.dynamics.derivatives import COEFFICIENTS, DAMPING, STATIC, Deriv
 from spaceplane.dynamics.flightpoint import AngularRates, FlightPoint, equilibrium_rates
 from spaceplane.dynamics.linearise import linearise
 from spaceplane.dynamics.modes import Mode, identify
+from spaceplane.dynamics.sensitivity import AT_POINT, PARAMETERS, ModeSensitivity, of_model
 from spaceplane.dynamics.statespace import StateSpace
 from spaceplane.environment.constants import STANDARD_GRAVITY
 from spaceplane.environment.validity import Validity, assess_validity
+from spaceplane.qualities.airframe import Airframe
 from spaceplane.qualities.assess import Verdict, assess, load_factor_slope
+from spaceplane.qualities.assess_airframe import assess_airframe
+from spaceplane.qualities.probability import Outlook, Uncertainty, mirror_correlation, outlooks
 from spaceplane.vehicle.presets import Vehicle
 
 if TYPE_CHECKING:
     import xarray as xr
+
+SAMPLES = 1000
+"""Draws of the derivatives at each flight point: probabilities within 0.03."""
 
 
 @dataclass(frozen=True)
@@ -32,8 +39,12 @@ class PointAnalysis:
         rates: equilibrium body rates; None without CL.
         system: linear model; None where a derivative is missing.
         modes: its modes.
-        verdicts: MIL-F-8785C.
+        verdicts: MIL-F-8785C on the modes.
         reason: why there is no linear model; empty where there is.
+        airframe_verdicts: MIL-F-8785C on the airframe and its controls, and departure criteria.
+        uncertainty: of the derivatives, from their stated errors; None without any.
+        outlooks: the verdicts' probabilities; empty without uncertainty.
+        sensitivities: of the modes, in their order.
     """
 
     point: FlightPoint
@@ -43,6 +54,10 @@ class PointAnalysis:
     modes: tuple[Mode, ...]
     verdicts: tuple[Verdict, ...]
     reason: str = ""
+    airframe_verdicts: tuple[Verdict, ...] = ()
+    uncertainty: Uncertainty | None = None
+    outlooks: tuple[Outlook, ...] = ()
+    sensitivities: tuple[ModeSensitivity, ...] = ()
 
 
 def fly(
@@ -90,4 +105,38 @@ def fly(
     weight = vehicle.mass.mass * STANDARD_GRAVITY
     n_alpha = load_factor_slope(static["CL_alpha"], point.dynamic_pressure, vehicle.reference.area, weight)
     verdicts = assess(modes, settings.vehicle_class, settings.category, n_alpha)
-    return PointAnalysis(point, validity, rates, system, tuple(modes), tuple(verdicts))
+    model = (point, vehicle.mass, vehicle.reference, all_known)
+    airframe = Airframe(*model, *_trim(base, index, settings))
+    uncertainty = _uncertainty(base, derivatives, index, all_known)
+    judged = (settings.vehicle_class, settings.category)
+    return PointAnalysis(
+        point,
+        validity,
+        rates,
+        system,
+        tuple(modes),
+        tuple(verdicts),
+        airframe_verdicts=assess_airframe(airframe, *judged, system),
+        uncertainty=uncertainty,
+        outlooks=outlooks(airframe, uncertainty, *judged, samples=SAMPLES, form=settings.form) if uncertainty else (),
+        sensitivities=of_model(*model, system.A, modes, settings.form),
+    )
+
+
+def _trim(base: xr.Dataset, index: int, settings: AnalyseSettings) -> tuple[float | None, float]:
+    """(C_m of the base condition or None, elevator of the body that was solved, rad)."""
+    moment = float(base.Cm.sel(part=TOTAL)[index])
+    deflections = settings.deflections
+    return moment if math.isfinite(moment) else None, 0.5 * (deflections.elevon_left + deflections.elevon_right)
+
+
+def _uncertainty(base: xr.Dataset, derivatives: xr.Dataset, index: int, known: Derivatives) -> Uncertainty | None:
+    """Stated errors of the derivatives, C_L and C_D as half widths of 95 % intervals; None where none is above 0."""
+    half_width = {}
+    for name in (*PARAMETERS, *known.controls):
+        source, label = (base, f"{name}_error") if name in AT_POINT else (derivatives, f"{name}_error")
+        if label in source and (name in AT_POINT or name in source):
+            error = float(source[label][index])
+            if math.isfinite(error) and error > 0:
+                half_width[name] = error
+    return Uncertainty(half_width, mirror_correlation(known, half_width)) if half_width else None

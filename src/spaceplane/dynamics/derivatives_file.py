@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import tomllib
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from spaceplane.dynamics.derivatives import (
@@ -25,6 +25,8 @@ UNITS = ("per_degree", "per_radian")
 FLIGHT_REQUIRED = ("mach", "altitude_m", "alpha_deg", "gamma_deg", "bank_deg", "CL", "CD")
 FLIGHT_OPTIONAL = ("pressure_Pa", "temperature_K")
 VEHICLE_REQUIRED = ("mass_kg", "Ixx_kgm2", "Iyy_kgm2", "Izz_kgm2", "area_m2", "c_ref_m", "b_ref_m")
+SAMPLES = 2000
+UNCERTAINTY_KEYS = ("correlation", "samples", "seed")
 MODEL_KEYS = ("form", "density_gradient", "gyroscopic", "vehicle_class", "category")
 
 
@@ -43,6 +45,10 @@ class ModesCase:
         vehicle_class: of MIL-F-8785C.
         category: flight phase category of MIL-F-8785C.
         given: the file's content as read.
+        uncertainty: name to half width of the 95 % interval, per rad and per unit Mach number; empty without any.
+        correlation: pairs of uncertain names to coefficient of correlation.
+        samples: draws for probabilities.
+        seed: of the draws.
     """
 
     point: FlightPoint
@@ -55,6 +61,10 @@ class ModesCase:
     vehicle_class: str
     category: str
     given: Mapping[str, Mapping[str, object]]
+    uncertainty: Mapping[str, float] = field(default_factory=dict)
+    correlation: Mapping[tuple[str, str], float] = field(default_factory=dict)
+    samples: int = SAMPLES
+    seed: int = 0
 
 
 def read(path: str | Path) -> ModesCase:
@@ -83,7 +93,7 @@ def from_tables(content: Mapping[str, object]) -> ModesCase:
     Raises:
         InputError: an unknown or missing table or key, or a value that is no finite number or out of its limits.
     """
-    _known("", content, ("flight", "vehicle", "derivatives", "model"))
+    _known("", content, ("flight", "vehicle", "derivatives", "model", "uncertainty"))
     flight = _numbers(content, "flight", FLIGHT_REQUIRED, FLIGHT_OPTIONAL)
     vehicle = _numbers(content, "vehicle", VEHICLE_REQUIRED, ())
     for name, value in vehicle.items():
@@ -101,6 +111,7 @@ def from_tables(content: Mapping[str, object]) -> ModesCase:
         vehicle_class=vehicle_class,
         category=category,
         given={key: dict(_table(content, key)) for key in content},
+        **_uncertainty(content),
     )
 
 
@@ -112,6 +123,47 @@ def _derivatives(content: Mapping[str, object]) -> Derivatives:
         raise InputError(f"[derivatives] unit = {table['unit']!r}: must be one of {', '.join(UNITS)}")
     values = _numbers(content, "derivatives", STATIC, (*DAMPING, *CONTROL_DERIVATIVES), ignore=("unit",))
     return from_mapping(per_radian(values) if table["unit"] == "per_degree" else values)
+
+
+def _uncertainty(content: Mapping[str, object]) -> dict:
+    """Half widths in the unit of `[derivatives]`, C_L and C_D among them; correlations, samples and seed."""
+    if "uncertainty" not in content:
+        return {}
+    table = _table(content, "uncertainty")
+    names = (*STATIC, *DAMPING, *CONTROL_DERIVATIVES, "CL", "CD")
+    plain = _numbers(content, "uncertainty", (), names, ignore=UNCERTAINTY_KEYS)
+    for name, value in plain.items():
+        if value < 0:
+            raise InputError(f"[uncertainty] {name} = {value:g}: must be 0 or above, the half width of a 95 % interval")
+        given = _table(content, "derivatives")
+        if name in CONTROL_DERIVATIVES and name not in given:
+            raise InputError(f"[uncertainty] {name}: [derivatives] has no {name}")
+    coefficients = {name: plain.pop(name) for name in ("CL", "CD") if name in plain}
+    per_degree = _table(content, "derivatives").get("unit") == "per_degree"
+    widths = {**(per_radian(plain) if per_degree else plain), **coefficients}
+    whole = {}
+    for key, default, least in (("samples", SAMPLES, 1), ("seed", 0, 0)):
+        value = table.get(key, default)
+        if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= 1_000_000:
+            raise InputError(f"[uncertainty] {key} = {value!r}: must be a whole number from {least} to 1000000")
+        whole[key] = value
+    return {"uncertainty": widths, "correlation": _correlation(table, widths), **whole}
+
+
+def _correlation(table: Mapping[str, object], widths: Mapping[str, float]) -> dict[tuple[str, str], float]:
+    rows = table.get("correlation", [])
+    wanted = 'a list of ["name", "name", coefficient] with different names of this table and -1 to 1'
+    if not isinstance(rows, list):
+        raise InputError(f"[uncertainty] correlation = {rows!r}: must be {wanted}")
+    found = {}
+    for row in rows:
+        good = isinstance(row, list) and len(row) == 3 and all(isinstance(name, str) for name in row[:2])
+        good = good and len(set(row[:2])) == 2 and set(row[:2]) <= set(widths)
+        good = good and isinstance(row[2], int | float) and not isinstance(row[2], bool) and abs(row[2]) <= 1
+        if not good:
+            raise InputError(f"[uncertainty] correlation {row!r}: must be {wanted}")
+        found[row[0], row[1]] = float(row[2])
+    return found
 
 
 def _model(content: Mapping[str, object]) -> tuple[str, bool, bool, str, str]:

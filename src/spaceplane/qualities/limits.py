@@ -1,4 +1,4 @@
-"""The limits of MIL-F-8785C, read from the data file beside this module."""
+"""The limits of MIL-F-8785C and of departure criteria, read from the data files beside this module."""
 
 from __future__ import annotations
 
@@ -15,8 +15,17 @@ CATEGORIES = ("A", "B", "C")
 @lru_cache(maxsize=1)
 def specification() -> dict:
     """All limits as read from `mil_f_8785c.toml`."""
-    text = files("spaceplane.qualities").joinpath("data/mil_f_8785c.toml").read_text(encoding="utf-8")
-    return tomllib.loads(text)
+    return _read("mil_f_8785c.toml")
+
+
+@lru_cache(maxsize=1)
+def departure() -> dict:
+    """Departure criteria as read from `departure.toml`, per degree."""
+    return _read("departure.toml")
+
+
+def _read(name: str) -> dict:
+    return tomllib.loads(files("spaceplane.qualities").joinpath("data", name).read_text(encoding="utf-8"))
 
 
 def check(vehicle_class: str, category: str) -> None:

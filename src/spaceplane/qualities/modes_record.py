@@ -3,8 +3,9 @@
 Schema `spaceplane.modes`, version 1: `flight` and `vehicle` (resolved values, unit in the name), `derivatives` (per rad
 and per unit Mach), `form`, `states`, `inputs`, `A`, `B`, `equilibrium` (rad/s), `eigenvalues` (every one, [re, im] in
 1/s) with `names` and `eigenvectors` in the same order, `modes` (one for each real eigenvalue or conjugate pair; see
-`spaceplane.dynamics.modes.to_record`), `n_alpha_g_per_rad`, `verdicts` (see `spaceplane.qualities.assess.Verdict`).
-Missing numbers are null.
+`spaceplane.dynamics.modes.to_record`; with `eigenvalue_error` and `drivers`), `n_alpha_g_per_rad`, `uncertainty` (95 %
+half widths as given, per rad), `verdicts` on modes and `airframe_verdicts` (see `spaceplane.qualities.verdict.Verdict`;
+with `probabilities`). Missing numbers are null.
 """
 
 from __future__ import annotations
@@ -20,10 +21,13 @@ from spaceplane.dynamics.derivatives_file import ModesCase
 from spaceplane.dynamics.flightpoint import equilibrium_rates
 from spaceplane.dynamics.linearise import linearise
 from spaceplane.dynamics.modes import Mode, identify
-from spaceplane.dynamics.modes import to_record as mode_record
+from spaceplane.dynamics.sensitivity import of_model
 from spaceplane.environment.constants import STANDARD_GRAVITY
+from spaceplane.qualities.airframe import Airframe
 from spaceplane.qualities.assess import assess, load_factor_slope
-from spaceplane.qualities.assess import to_record as verdict_record
+from spaceplane.qualities.assess_airframe import assess_airframe
+from spaceplane.qualities.outlook_record import mode_records, verdict_records
+from spaceplane.qualities.probability import Uncertainty, outlooks
 
 
 def analyse_modes(case: ModesCase) -> dict:
@@ -40,6 +44,15 @@ def analyse_modes(case: ModesCase) -> dict:
     n_alpha = load_factor_slope(case.derivatives.CL_alpha, case.point.dynamic_pressure, case.reference.area, weight)
     verdicts = assess(modes, case.vehicle_class, case.category, n_alpha)
     rates = equilibrium_rates(case.point, case.mass.mass, case.reference.area)
+    model = (case.point, case.mass, case.reference, case.derivatives)
+    how = (case.form, case.density_gradient, case.gyroscopic)
+    airframe, judged = Airframe(*model), (case.vehicle_class, case.category)
+    verdicts += assess_airframe(airframe, *judged, system)
+    uncertainty = Uncertainty(case.uncertainty, case.correlation) if case.uncertainty else None
+    chances = ()
+    if uncertainty:
+        chances = outlooks(airframe, uncertainty, *judged, "sampling", case.samples, case.seed, *how)
+    on_modes, on_airframe = verdict_records(verdicts, chances)
     return {
         "schema": "spaceplane.modes",
         "schema_version": 1,
@@ -66,9 +79,11 @@ def analyse_modes(case: ModesCase) -> dict:
         "A": system.A.tolist(),
         "B": system.B.tolist(),
         **_spectrum(modes),
-        "modes": [mode_record(mode) for mode in modes],
+        "modes": mode_records(modes, of_model(*model, system.A, modes, *how), uncertainty),
         "n_alpha_g_per_rad": n_alpha,
-        "verdicts": [verdict_record(verdict) for verdict in verdicts],
+        "uncertainty": dict(case.uncertainty),
+        "verdicts": on_modes,
+        "airframe_verdicts": on_airframe,
     }
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from markupsafe import Markup
 
 from spaceplane.aero.axes import FORCES_AND_MOMENTS
+from spaceplane.report import likelihood
 from spaceplane.report.names import GREEK, STATES, greek, split_derivative, stability, symbol, words
 from spaceplane.report.numbers import MINUS, MISSING, Measured, duration, fixed, grouped, is_number, measured, number
 from spaceplane.report.plots import convergence_plot, derivative_bars, eigenvalue_planes, eigenvalue_text, phase_clock
@@ -41,6 +42,8 @@ def point(p: dict) -> dict:
         **_eigenvectors(p, modes),
         "matrices": _matrices(p),
         "verdict_groups": _verdict_groups(verdicts),
+        "airframe_groups": _verdict_groups(p.get("airframe_verdicts") or []),
+        "samples": next((v["samples"] for v in verdicts if v.get("samples")), None),
         "convergence": [_convergence(r) for r in p.get("convergence") or []],
     }
 
@@ -167,6 +170,8 @@ def _mode(mode: dict) -> dict:
         "damping": number(mode.get("damping_ratio"), 3),
         "frequency": number(mode.get("natural_frequency_rads") if mode["eigenvalue"][1] else None, 3),
         "explanation": greek(mode.get("explanation") or ""),
+        "error": likelihood.eigenvalue_error(mode),
+        "drivers": likelihood.drivers(mode),
     }
 
 
@@ -236,7 +241,10 @@ def _verdict(v: dict) -> dict:
         "value": number(v.get("value"), 4),
         "unit": _pretty(v.get("unit") or "") if is_number(v.get("value")) else "",
         "limits": [_limit(limits.get(k)) for k in ("1", "2", "3")],
-        "level": level_of(v),
+        "chip": likelihood.outcome_chip(v),
+        "chances": likelihood.chances(v),
+        "chance_text": likelihood.chance_text(v),
+        "asked": likelihood.asked(limits),
         "margin": f"{'+' if margin > 0 else ''}{number(margin, 3)}" if is_number(margin) else MISSING,
         "inside": is_number(margin) and margin >= 0,
         "note": _pretty(v.get("note") or ""),
@@ -245,7 +253,7 @@ def _verdict(v: dict) -> dict:
 
 def _pretty(text: str) -> str:
     """Plain-text formulas with Greek letters and powers."""
-    for plain, sign in (("omega", "ω"), ("n/alpha", "n/α"), ("^2", "²"), (" s2", " s²"), ("zeta", "ζ")):
+    for plain, sign in (("omega", "ω"), ("n/alpha", "n/α"), ("^2", "²"), (" s2", " s²"), ("zeta", "ζ"), ("_beta", "β")):
         text = text.replace(plain, sign)
     return text
 

@@ -19,10 +19,9 @@ from spaceplane.aero.uncertainty.grid import LEVEL, ORDER, SAFETY, SAFETY_SUPERS
 from spaceplane.aero.uncertainty.settings import ITERATION, MESH
 from spaceplane.analysis.flight import PointAnalysis
 from spaceplane.analysis.found import Analysis
-from spaceplane.dynamics.modes import to_record as mode_record
 from spaceplane.flow.solution import ConvergenceRecord
 from spaceplane.plain import degrees, plain
-from spaceplane.qualities.assess import to_record as verdict_record
+from spaceplane.qualities.outlook_record import mode_records, verdict_records
 from spaceplane.report.read import SCHEMA, SCHEMA_VERSION
 from spaceplane.vehicle.controls import ControlDeflections
 from spaceplane.vehicle.presets import Vehicle
@@ -252,6 +251,7 @@ def convergence_row(one: ConvergenceRecord, plan: ConditionPlan, condition: int,
 def dynamics(found: PointAnalysis) -> dict:
     """Equilibrium, linear model, modes and verdicts at one flight point; empty where there are none."""
     rates, system = found.rates, found.system
+    on_modes, on_airframe = verdict_records((*found.verdicts, *found.airframe_verdicts), found.outlooks)
     return {
         "equilibrium": {
             "p_rads": rates.p if rates else None,
@@ -263,8 +263,9 @@ def dynamics(found: PointAnalysis) -> dict:
         "states": system.states if system else [],
         "inputs": system.inputs if system else [],
         "form": system.form if system else None,
-        "modes": [mode_record(mode) for mode in found.modes],
-        "verdicts": [verdict_record(verdict) for verdict in found.verdicts],
+        "modes": mode_records(found.modes, found.sensitivities, found.uncertainty),
+        "verdicts": on_modes,
+        "airframe_verdicts": on_airframe,
         "reason": found.reason,
     }
 

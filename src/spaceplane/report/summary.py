@@ -13,7 +13,9 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from spaceplane.qualities.probability import per_cent
 from spaceplane.report.flight_point import LEVEL_CSS, level_of, time_text, worst_levels
+from spaceplane.report.likelihood import outcome_chip
 from spaceplane.report.names import stability
 from spaceplane.report.numbers import duration, fixed, grouped, is_number, measured, number
 from spaceplane.report.plots import eigenvalue_text
@@ -68,6 +70,8 @@ def print_summary(result: dict, report: Path | None = None, console: Console | N
             console.print(_modes_table(f"modes at {p['name']}", p["modes"]))
     if any(p.get("verdicts") for p in points):
         console.print(_levels_table(points))
+    if any(p.get("airframe_verdicts") for p in points):
+        console.print(_airframe_table(points))
     for line in warnings(result):
         console.print(Text(f"warning: {line}", style="yellow"), highlight=False, soft_wrap=True)
     console.print(_convergence_line(result), highlight=False)
@@ -156,7 +160,38 @@ def _levels_table(points: list[dict]) -> Table:
 
 def _level_cell(verdict: dict | None) -> Text:
     level = level_of(verdict) if verdict else None
-    return Text("n/a" if level is None else level_text(level), style=COLOURS.get(LEVEL_CSS.get(level, ""), "dim"))
+    text = "n/a" if level is None else level_text(level)
+    return Text(text + _share(verdict, str(level)), style=COLOURS.get(LEVEL_CSS.get(level, ""), "dim"))
+
+
+def _airframe_table(points: list[dict]) -> Table:
+    """What is asked of the airframe, its controls and departure, where it applies at some flight point."""
+    table = _table("airframe, controls, departure")
+    for p in points:
+        table.add_column(p["name"], justify="right", no_wrap=True)
+    found = [{(v["criterion"], v["quantity"]): v for v in p.get("airframe_verdicts") or []} for p in points]
+    for key in dict.fromkeys(key for verdicts in found for key in verdicts):
+        row = [verdicts.get(key) for verdicts in found]
+        if any(v and v["applicable"] for v in row):
+            paragraph = next(v["paragraph"] for v in row if v)
+            number_of = f" ({paragraph})" if paragraph[:1].isdigit() else ""
+            table.add_row(f"{key[0].removeprefix('departure: ')}: {key[1]}{number_of}", *(_outcome(v) for v in row))
+    return table
+
+
+def _outcome(verdict: dict | None) -> Text:
+    if verdict is None:
+        return Text("n/a", style="dim")
+    chip = outcome_chip(verdict)
+    name = str(verdict["level"]) if verdict.get("level") is not None else chip["text"]
+    text = "n/a" if not chip["css"] else chip["text"] + _share(verdict, name)
+    return Text(text, style=COLOURS.get(chip["css"], "dim"))
+
+
+def _share(verdict: dict | None, outcome: str) -> str:
+    """How likely an outcome is, where others are possible."""
+    found = (verdict or {}).get("probabilities") or {}
+    return f", {per_cent(found[outcome])}" if len(found) > 1 and outcome in found else ""
 
 
 def print_modes(record: dict, console: Console | None = None) -> None:
@@ -165,6 +200,8 @@ def print_modes(record: dict, console: Console | None = None) -> None:
     console.print(_modes_table("mode", record["modes"]))
     if record.get("verdicts"):
         console.print(_levels_table([{"name": "verdict", "verdicts": record["verdicts"]}]))
+    if record.get("airframe_verdicts"):
+        console.print(_airframe_table([{"name": "verdict", "airframe_verdicts": record["airframe_verdicts"]}]))
 
 
 def trial_line(trial: Trial) -> str:

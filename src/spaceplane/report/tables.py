@@ -90,12 +90,14 @@ def verdict_rows(result: dict) -> list[dict]:
         "level",
         "margin",
         "applicable",
+        "met",
+        "probability_text",
         "note",
     )
     return [
         {"flight_point": p["name"]} | {k: v.get(k) for k in keys}
         for p in result["flight_points"]
-        for v in p.get("verdicts") or []
+        for v in (*(p.get("verdicts") or []), *(p.get("airframe_verdicts") or []))
     ]
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
+from functools import cached_property
 
 from spaceplane.errors import InputError
 from spaceplane.vehicle.controls import CONTROLS as SURFACES
@@ -79,10 +80,14 @@ class Derivatives:
             if combined in given and (left in given or right in given):
                 raise InputError(f"{combined}: give its derivatives or those of {left} and {right}, not both")
 
-    def given_controls(self) -> tuple[str, ...]:
-        """Controls of which at least one derivative is given, in the order of `CONTROLS`."""
+    @cached_property
+    def _given(self) -> tuple[str, ...]:
         given = {name.split("_", 1)[1] for name in self.controls}
         return tuple(control for control in CONTROLS if control in given)
+
+    def given_controls(self) -> tuple[str, ...]:
+        """Controls of which at least one derivative is given, in the order of `CONTROLS`."""
+        return self._given
 
     def available_controls(self) -> tuple[str, ...]:
         """The given controls and the combined ones that follow from them."""

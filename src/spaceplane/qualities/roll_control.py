@@ -1,0 +1,247 @@
+"""MIL-F-8785C 3.3.2.2, 3.3.2.4, 3.3.4: roll rate, sideslip and time to bank after a step of the aileron.
+
+The lateral part of the linear model (p, r, beta, sigma) answers a step to the limit of the aileron, rudder fixed; the
+longitudinal motion is held. The response is exact for the linear system (matrix exponential); for bank angles of 30
+to 60 deg it is its extrapolation. Roll rate is that about the velocity, p cos(alpha) + r sin(alpha), which at the
+angles of attack of an entry is what turns the lift.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from spaceplane.dynamics.statespace import StateSpace
+from spaceplane.errors import InputError
+from spaceplane.qualities import limits
+from spaceplane.qualities.airframe import Airframe
+from spaceplane.qualities.verdict import (
+    AIRFRAME,
+    BELOW,
+    Context,
+    Level,
+    Verdict,
+    least_text,
+    level_of_least,
+    level_of_most,
+    most_text,
+)
+
+LATERAL = ("p", "r", "beta", "sigma")
+STEP = 0.02  # s
+DOUBLINGS = 10  # 1024 steps, 20.5 s
+LEAST_WINDOW = 2.0  # s of 3.3.2.4
+NO_AILERON = "not applicable: no aileron with a rolling moment is known"
+
+
+@dataclass(frozen=True)
+class RollResponse:
+    """Answer of the lateral motion to a step of the aileron to the right.
+
+    Attributes:
+        time: [step] s, from 0.
+        rate: [step] roll rate about the velocity, rad/s.
+        bank: [step] change of the bank angle, rad.
+        sideslip: [step] change of the sideslip, rad; right positive.
+        half_period: s, of the fastest lateral oscillation; None if there is none.
+    """
+
+    time: np.ndarray
+    rate: np.ndarray
+    bank: np.ndarray
+    sideslip: np.ndarray
+    half_period: float | None
+
+    def time_to_bank(self, angle: float) -> float | None:
+        """Time, s, until the bank angle has changed by `angle`, rad; None if it does not within the response."""
+        beyond = np.flatnonzero(self.bank >= angle)
+        if not len(beyond):
+            return None
+        k = int(beyond[0])
+        share = (angle - self.bank[k - 1]) / (self.bank[k] - self.bank[k - 1])
+        return float(self.time[k - 1] + share * (self.time[k] - self.time[k - 1]))
+
+    def bank_at(self, time: float) -> float:
+        """Change of the bank angle, rad, after a time, s."""
+        return float(np.interp(time, self.time, self.bank))
+
+    def oscillation(self) -> float:
+        """Roll rate at the first minimum after the first peak, as a ratio to that at the peak; 1 without a minimum."""
+        turns = np.diff(np.sign(np.diff(self.rate)))
+        peaks = np.flatnonzero(turns < 0) + 1
+        if not len(peaks):
+            return 1.0
+        troughs = np.flatnonzero(turns > 0) + 1
+        troughs = troughs[troughs > peaks[0]]
+        return float(self.rate[troughs[0]] / self.rate[peaks[0]]) if len(troughs) else 1.0
+
+
+def roll_response(system: StateSpace, aileron: float) -> RollResponse | None:
+    """Answer of the lateral states to a step of the aileron, rad, in the sense that rolls to the right.
+
+    Args:
+        system: rigid-body linear model with the input "aileron".
+        aileron: size of the step, rad, above 0.
+
+    Returns:
+        The response, or None where no aileron rolls.
+
+    Raises:
+        InputError: the step is not a positive number, or the system lacks a lateral state.
+    """
+    if not (math.isfinite(aileron) and aileron > 0):
+        raise InputError(f"aileron = {aileron}: must be a step above 0 rad")
+    missing = [name for name in LATERAL if name not in system.states]
+    if missing:
+        raise InputError(f"system: lacks the states {', '.join(missing)}")
+    if "aileron" not in system.inputs:
+        return None
+    rows = [system.index(name) for name in LATERAL]
+    A, b = system.A[np.ix_(rows, rows)], system.B[rows, system.inputs.index("aileron")]
+    if b[0] == 0.0:
+        return None
+    augmented = np.zeros((5, 5))
+    augmented[:4, :4], augmented[:4, 4] = A, math.copysign(aileron, b[0]) * b
+    power = _exponential(augmented * STEP)
+    states = np.array([[0.0], [0.0], [0.0], [0.0], [1.0]])
+    for _ in range(DOUBLINGS):
+        states, power = np.hstack([states, power @ states]), power @ power
+    alpha = system.reference.get("alpha", 0.0)
+    swings = [value.imag for value in np.linalg.eigvals(A) if value.imag > 1e-8]
+    return RollResponse(
+        time=STEP * np.arange(states.shape[1]),
+        rate=states[0] * math.cos(alpha) + states[1] * math.sin(alpha),
+        bank=states[3],
+        sideslip=states[2],
+        half_period=math.pi / max(swings) if swings else None,
+    )
+
+
+def _exponential(matrix: np.ndarray) -> np.ndarray:
+    """exp of a small matrix by scaling, Taylor series and squaring.
+
+    For matrices of this size a hundred times faster than scipy's, whose products wake up all threads of the library
+    below. Twelve terms at a norm of at most 1/4 leave 1e-17.
+    """
+    squarings = max(0, math.ceil(math.log2(max(float(np.abs(matrix).sum(axis=1).max()), 1e-300))) + 2)
+    scaled = matrix / 2.0**squarings
+    term = np.eye(len(matrix))
+    power = term.copy()
+    for k in range(1, 13):
+        term = term @ scaled / k
+        power = power + term
+    for _ in range(squarings):
+        power = power @ power
+    return power
+
+
+def requirement(context: Context, speed_range: str) -> tuple[float, Sequence[float]] | None:
+    """(bank angle, rad; longest times, s, at levels 1 to 3) of table IX; None for class IV, not in the data."""
+    entry = limits.specification()["roll_control"][context.category].get(context.vehicle_class)
+    if entry is None:
+        return None
+    return math.radians(entry["bank_deg"]), entry.get("time_s") or entry[speed_range]
+
+
+def verdicts(airframe: Airframe, system: StateSpace, context: Context) -> list[Verdict]:
+    """Roll rate oscillations, adverse and proverse sideslip, time to bank."""
+    quantities = (
+        ("roll_rate_oscillation", "roll rate at first minimum over first peak"),
+        ("sideslip_excursion", "adverse sideslip per k"),
+        ("sideslip_excursion", "proverse sideslip per k"),
+        ("roll_control", "time to bank"),
+    )
+    limit = airframe.aileron_limit()
+    known = "aileron" in airframe.derivatives.available_controls()
+    response = roll_response(system, limit) if known and limit > 0 else None
+    if response is None:
+        note = NO_AILERON if limit > 0 else "not applicable: the elevator leaves no aileron"
+        return [context.verdict(key, AIRFRAME, quantity, applicable=False, note=note) for key, quantity in quantities]
+    wanted = requirement(context, airframe.speed_range)
+    return [
+        _oscillation(response, context),
+        *(_sideslip(response, side, wanted, context) for side in ("adverse", "proverse")),
+        _time_to_bank(response, wanted, limit, airframe.speed_range, context),
+    ]
+
+
+def _oscillation(response: RollResponse, context: Context) -> Verdict:
+    lows = [*limits.specification()["roll_rate_oscillation"][context.category], None]
+    value = response.oscillation()
+    return context.verdict(
+        "roll_rate_oscillation",
+        AIRFRAME,
+        "roll rate at first minimum over first peak",
+        value=value,
+        limits=least_text(lows),
+        level=level_of_least(value, lows),
+        margin=value - lows[0],
+        note="no minimum follows the first peak" if value == 1.0 else "step of the aileron, rudder fixed",
+    )
+
+
+def _sideslip(
+    response: RollResponse, side: str, wanted: tuple[float, Sequence[float]] | None, context: Context
+) -> Verdict:
+    quantity = f"{side} sideslip per k"
+    if wanted is None:
+        note = "not applicable: table IX of class IV is not in the data"
+        return context.verdict("sideslip_excursion", AIRFRAME, quantity, applicable=False, note=note)
+    angle, times = wanted
+    highs = limits.specification()["sideslip_excursion"][context.category][side]
+    window = max(LEAST_WINDOW, response.half_period or 0.0)
+    within = response.sideslip[response.time <= window + 1e-9]
+    excursion = math.degrees(max(0.0, within.max() if side == "adverse" else -within.min()))
+    ratios = [response.bank_at(time) / angle for time in times[:2]]
+    level: Level = BELOW if min(ratios) <= 0 else 3
+    for k in (1, 0):
+        if ratios[k] > 0 and excursion / ratios[k] <= highs[k]:
+            level = k + 1
+    value = excursion / ratios[0] if ratios[0] > 0 else None
+    return context.verdict(
+        "sideslip_excursion",
+        AIRFRAME,
+        quantity,
+        value=value,
+        unit="deg",
+        limits=most_text([*highs, None]),
+        level=level,
+        margin=None if value is None else highs[0] - value,
+        note=f"within {window:.3g} s of the step, rudder fixed; k = {ratios[0]:.3g} at level 1"
+        + ("" if ratios[0] > 0 else ": the vehicle rolls against the aileron"),
+    )
+
+
+def _time_to_bank(
+    response: RollResponse,
+    wanted: tuple[float, Sequence[float]] | None,
+    aileron: float,
+    speed_range: str,
+    context: Context,
+) -> Verdict:
+    if wanted is None:
+        note = "not applicable: table IX of class IV is not in the data"
+        return context.verdict("roll_control", AIRFRAME, "time to bank", applicable=False, note=note)
+    angle, highs = wanted
+    quantity = f"time to bank by {math.degrees(angle):.0f} deg"
+    value = response.time_to_bank(angle)
+    notes = [f"aileron {math.degrees(aileron):.3g} deg at once, rudder fixed"]
+    if context.vehicle_class == "III":
+        notes.append(f"speed range {speed_range}")
+    if value is None:
+        reverses = response.bank_at(highs[2]) < 0
+        notes.append("rolls against the aileron" if reverses else f"not within {response.time[-1]:.3g} s")
+    return context.verdict(
+        "roll_control",
+        AIRFRAME,
+        quantity,
+        value=value,
+        unit="s",
+        limits=most_text(highs),
+        level=BELOW if value is None else level_of_most(value, highs),
+        margin=None if value is None else highs[0] - value,
+        note="; ".join(notes),
+    )

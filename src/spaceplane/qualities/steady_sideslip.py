@@ -1,0 +1,82 @@
+"""MIL-F-8785C 3.3.6: senses of rudder, bank angle and aileron in steady straight sideslips.
+
+Nothing turns and the wings are nearly level, so for aileron a, rudder r and bank angle phi per sideslip beta
+
+    C_l_beta + C_l_a a + C_l_r r = 0,   C_n_beta + C_n_a a + C_n_r r = 0,
+    C_Y_beta + C_Y_a a + C_Y_r r + m g cos(gamma) / (q S) phi = 0.
+
+In right sideslip (beta > 0, the wind from the right) the rudder must yaw the nose to the left, the right wing be down
+and the aileron roll to the right. Without the controls the signs of C_n_beta, C_Y_beta and C_l_beta say the same.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from spaceplane.qualities.airframe import Airframe
+from spaceplane.qualities.verdict import AIRFRAME, Context, Verdict
+
+RULES = (
+    # criterion, quantity with controls, derivative without them, sign wanted of it
+    ("sideslip_yaw", "rudder moment to the left per right sideslip", "Cn_beta", 1.0),
+    ("sideslip_force", "bank to the right per right sideslip", "CY_beta", -1.0),
+    ("sideslip_roll", "aileron moment to the right per right sideslip", "Cl_beta", -1.0),
+)
+
+
+def solve(airframe: Airframe) -> tuple[float, float, float] | None:
+    """(aileron, rudder, bank angle) per sideslip, rad/rad; None where aileron or rudder are not known or not enough."""
+    d = airframe.derivatives
+    if not {"aileron", "rudder"} <= set(d.available_controls()):
+        return None
+    matrix = np.array([[d.control(c, "aileron"), d.control(c, "rudder")] for c in ("Cl", "Cn")])
+    if not np.all(np.isfinite(matrix)) or np.linalg.cond(matrix) > 1e10:
+        return None
+    aileron, rudder = np.linalg.solve(matrix, [-d.Cl_beta, -d.Cn_beta])
+    point = airframe.point
+    weight = airframe.mass.mass * point.gravity * math.cos(point.gamma)
+    side = d.CY_beta + d.control("CY", "aileron") * aileron + d.control("CY", "rudder") * rudder
+    return float(aileron), float(rudder), float(-side * point.dynamic_pressure * airframe.reference.area / weight)
+
+
+def verdicts(airframe: Airframe, context: Context) -> list[Verdict]:
+    """Three verdicts: yawing moment, side force, rolling moment; requirements of sense, without levels."""
+    found, d = solve(airframe), airframe.derivatives
+    if found is None:
+        return [
+            _of_sign(context, criterion, derivative, sign, getattr(d, derivative))
+            for criterion, _, derivative, sign in RULES
+        ]
+    aileron, rudder, bank = found
+    moments = (-d.control("Cn", "rudder") * rudder, bank, d.control("Cl", "aileron") * aileron)
+    notes = (f"rudder {rudder:.3g}", "deg of bank per deg", f"aileron {aileron:.3g}")
+    return [
+        context.verdict(
+            criterion,
+            AIRFRAME,
+            quantity,
+            value=value,
+            unit="deg/deg" if criterion == "sideslip_force" else "1/rad",
+            limits={k: "> 0" for k in "123"},
+            margin=value,
+            met=value > 0,
+            note=f"{note} per sideslip; steady, wings nearly level; no levels",
+        )
+        for (criterion, quantity, _, _), value, note in zip(RULES, moments, notes, strict=True)
+    ]
+
+
+def _of_sign(context: Context, criterion: str, name: str, sign: float, value: float) -> Verdict:
+    return context.verdict(
+        criterion,
+        AIRFRAME,
+        f"sign of C_{name[1:]}",
+        value=value,
+        unit="1/rad",
+        limits={k: "> 0" if sign > 0 else "< 0" for k in "123"},
+        margin=sign * value,
+        met=sign * value > 0,
+        note="aileron and rudder are not both known: judged by the derivative alone; no levels",
+    )
