@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from spaceplane.aero.model import netcdf
 from spaceplane.aero.model.model import AeroModel
 from spaceplane.decks import statement
 from spaceplane.dynamics.statespace import MOMENT_INPUTS, STATE_UNITS, StateSpace
@@ -63,6 +64,23 @@ def write_model_csv(model: AeroModel, folder: Path | str) -> list[Path]:
         write_csv(rows, target / name)
     write_text(_readme(model, tuple(tables)), target / "README.txt")
     return [target / name for name in (*tables, "README.txt")]
+
+
+def write_model_netcdf(model: AeroModel, folder: Path | str) -> list[Path]:
+    """Write aero_model.nc, which `aero.model.netcdf.load` reads; every value with units, axes, positive and reference.
+
+    Args:
+        model: to write.
+        folder: made if missing.
+
+    Raises:
+        InputError: the file cannot be written.
+    """
+    path = Path(folder) / "aero_model.nc"
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with renamed_when_done(path) as partial:
+        netcdf.save(model, partial)
+    return [path]
 
 
 def _degrees(angle: float) -> float:
