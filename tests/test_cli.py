@@ -804,7 +804,7 @@ def test_report_export_and_compare_read_what_analyse_wrote(capfd, analysed, tmp_
     code, out, _ = run(capfd, "export", "csv", folder, "--out", tmp_path, "--json", "-")
     assert code == 0
     assert {Path(p).name for p in json.loads(out)["files"]} == {
-        "coefficients.csv", "derivatives.csv", "modes.csv", "verdicts.csv",
+        "coefficients.csv", "derivatives.csv", "modes.csv", "verdicts.csv", "linear_models.csv",
     }  # fmt: skip
     assert run(capfd, "export", "netcdf", folder, "--out", tmp_path)[0] == 0
     result = folder / "result.json"

@@ -34,6 +34,7 @@ ORDER = (
     "dynamics",
     "qualities",
     "control",
+    "decks",
     "analysis",
     "report",
     "pipeline",
@@ -183,7 +184,7 @@ def test_dependencies_are_those_imported():
     project = tomllib.loads((SOURCE.parents[1] / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     bare = lambda text: re.split(r"[<>=!~\[; ]", text, maxsplit=1)[0].lower()  # noqa: E731
     declared = {MODULE_OF.get(bare(text), bare(text)) for text in project["dependencies"]}
-    optional = {"OCP"}  # the `step` extra
+    optional = {"OCP", "control"}  # the `step` and `decks` extras
     used = {
         name.partition(".")[0]
         for tree in TREES.values()

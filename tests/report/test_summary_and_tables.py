@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import csv
 import io
+import math
 
+import numpy as np
 import pytest
 from rich.console import Console
 
@@ -89,6 +91,8 @@ def test_csv_holds_every_number(tmp_path):
     assert [float(r["CL_error"]) for r in totals] == [p["coefficient_errors"]["CL"] for p in result["flight_points"]]
     assert next(r for r in paths["coefficients.csv"] if r["part"] == "nose")["CL_error"] == ""
     assert len(paths["modes.csv"]) == 18
+    linear = {(r["of"], r["with"]): r for r in paths["linear_models.csv"] if r["flight_point"] == "Mach 2.5"}
+    assert float(linear["alpha", "alpha"]["value"]) == point["A"][6][6] and linear["R", "V"]["unit"] == "(m)/s per m/s"
     missing = next(r for r in paths["verdicts.csv"] if r["mode"] == "short period")
     assert missing["level"] == "" and missing["value"] == ""
 
@@ -97,7 +101,7 @@ def test_netcdf_gives_the_same_numbers(tmp_path):
     import xarray as xr
 
     result = example_result()
-    (path,) = write_netcdf(result, tmp_path)
+    path, linear = write_netcdf(result, tmp_path)
     with xr.open_dataset(path) as data:
         record = result["flight_points"][1]["derivatives"]["Cm_alpha"]
         assert float(data.Cm_alpha.sel(flight_point="Mach 1.5", part="total")) == record["value"]
@@ -107,6 +111,21 @@ def test_netcdf_gives_the_same_numbers(tmp_path):
         error = result["flight_points"][1]["coefficient_errors"]["Cm"]
         assert float(data.Cm_error.sel(flight_point="Mach 1.5", part="total")) == error
         assert data.mach.values == pytest.approx([0.8, 1.5, 2.5])
+    point = result["flight_points"][2]
+    with xr.open_dataset(linear) as data:
+        own = data.sel(flight_point=point["name"])
+        assert np.array_equal(own["A"].sel(state=point["states"]), point["A"])
+        assert np.array_equal(own["B"].sel(input=point["inputs"]), point["B"])
+        assert float(own["reference_state"].sel(state="V")) == point["velocity_ms"]
+        assert float(own["reference_state"].sel(state="alpha")) == pytest.approx(math.radians(point["alpha_deg"]))
+
+
+def test_an_analysis_without_linear_models_has_no_file_of_them(tmp_path):
+    result = example_result()
+    for point in result["flight_points"]:
+        point.update(A=None, B=None, states=[], inputs=[])
+    assert "linear_models.csv" not in {path.name for path in write_csv(result, tmp_path)}
+    assert len(write_netcdf(result, tmp_path)) == 1
 
 
 def with_sources() -> dict:

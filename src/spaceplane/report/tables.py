@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable
 from pathlib import Path
 
 import numpy as np
 
+from spaceplane.decks.tables import write_linear_csv, write_linear_netcdf
+from spaceplane.dynamics.statespace import StateSpace
+from spaceplane.environment.constants import EARTH_RADIUS
 from spaceplane.files import renamed_when_done
 from spaceplane.files import write_csv as write_rows
 
@@ -109,8 +113,36 @@ TABLES: dict[str, Callable[[dict], list[dict]]] = {
 }
 
 
+def linear_models(result: dict) -> dict[str, StateSpace]:
+    """The linear model of each flight point that has one, by its name."""
+    return {
+        p["name"]: StateSpace(
+            np.array(p["A"], dtype=float),
+            np.array(p["B"], dtype=float).reshape(len(p["states"]), len(p["inputs"])),
+            tuple(p["states"]),
+            tuple(p["inputs"]),
+            p.get("form") or "given",
+            _reference_state(p),
+        )
+        for p in result["flight_points"]
+        if p.get("A")
+    }
+
+
+def _reference_state(point: dict) -> dict[str, float]:
+    """Values of the states at a flight point, SI and rad; those that the record lacks are left out."""
+    rates = point.get("equilibrium") or {}
+    angles = {"gamma": "gamma_deg", "alpha": "alpha_deg", "beta": "beta_deg", "sigma": "bank_deg"}
+    found = {"V": point.get("velocity_ms"), **{rate: rates.get(f"{rate}_rads") for rate in "pqr"}}
+    found |= {state: None if point.get(key) is None else math.radians(point[key]) for state, key in angles.items()}
+    if point.get("altitude_m") is not None:
+        found["R"] = EARTH_RADIUS + point["altitude_m"]
+    return {state: float(value) for state, value in found.items() if value is not None}
+
+
 def write_csv(result: dict, folder: Path) -> list[Path]:
-    """Write coefficients.csv, derivatives.csv, modes.csv and verdicts.csv; return their paths.
+    """Write coefficients.csv, derivatives.csv, modes.csv, verdicts.csv and, where there are linear models,
+    linear_models.csv (A and B); return their paths.
 
     Raises:
         OSError: the folder cannot be written.
@@ -120,11 +152,13 @@ def write_csv(result: dict, folder: Path) -> list[Path]:
         path = folder / f"{name}.csv"
         write_rows(rows(result), path)
         paths.append(path)
-    return paths
+    systems = linear_models(result)
+    return paths + (write_linear_csv(systems, folder) if systems else [])
 
 
 def write_netcdf(result: dict, folder: Path) -> list[Path]:
-    """Write tables.nc: coefficients and derivatives over flight point and part, errors beside; return its path.
+    """Write tables.nc, coefficients and derivatives over flight point and part with errors beside, and, where there are
+    linear models, linear_models.nc (A and B); return their paths.
 
     Raises:
         OSError: the folder cannot be written.
@@ -165,4 +199,5 @@ def write_netcdf(result: dict, folder: Path) -> list[Path]:
     path = folder / "tables.nc"
     with renamed_when_done(path) as partial:
         data.to_netcdf(partial)
-    return [path]
+    systems = linear_models(result)
+    return [path] + (write_linear_netcdf(systems, folder) if systems else [])

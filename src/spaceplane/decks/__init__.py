@@ -1,0 +1,1 @@
+"""Decks for other programs: JSBSim, Tudat, python-control, CSV and NetCDF."""

@@ -1,0 +1,72 @@
+"""What a deck is made from: an aerodynamic model by name or from a file or folder, with the mass of its vehicle."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from spaceplane.aero.model import netcdf
+from spaceplane.aero.model.model import AeroModel
+from spaceplane.aero.model.published import horus_2b_published
+from spaceplane.aero.model.table_set import read_table_set
+from spaceplane.errors import InputError, unknown_name
+from spaceplane.vehicle import presets
+from spaceplane.vehicle.properties import MassProperties
+
+PUBLISHED = "horus-2b-published"
+NAMES = (PUBLISHED,)
+TABLE_SET_FILE = "CL0.csv"
+
+
+@dataclass(frozen=True)
+class Source:
+    """An aerodynamic model and, where it is known, the mass of its vehicle.
+
+    Attributes:
+        model: tables.
+        mass: kg, kg m2; None if the source does not say and no vehicle was named.
+    """
+
+    model: AeroModel
+    mass: MassProperties | None
+
+
+def is_model(source: str) -> bool:
+    """Whether a source is a model by its name, `.nc` file or folder of tables, not the folder of an analysis."""
+    return source in NAMES or source.lower().endswith(".nc") or is_table_set(source)
+
+
+def is_table_set(source: str) -> bool:
+    """Whether a source is a folder in the layout of `aero.model.table_set`."""
+    return (Path(source) / TABLE_SET_FILE).is_file()
+
+
+def read_source(source: str, vehicle: str | None = None) -> Source:
+    """An aerodynamic model by name, from a `.nc` file or from a folder of tables.
+
+    Args:
+        source: a name of `NAMES`, a file that `aero.model.netcdf.save` wrote, or a folder in the layout of
+            `aero.model.table_set`.
+        vehicle: preset or YAML file that the mass and, for a folder of tables, the reference lengths are of; HORUS-2B
+            for its published tables by default.
+
+    Raises:
+        InputError: no such source, one that cannot be read, or a folder of tables without a vehicle.
+    """
+    named = presets.load(vehicle) if vehicle else None
+    if source == PUBLISHED:
+        return Source(horus_2b_published(), (named or presets.horus_2b()).mass)
+    path = Path(source)
+    if not path.exists():
+        raise InputError(f"{unknown_name('source', source, NAMES)} (or give a .nc file or a folder of tables)")
+    mass = named.mass if named else None
+    if path.is_file() and path.suffix.lower() == ".nc":
+        return Source(netcdf.load(path), mass)
+    if not is_table_set(source):
+        raise InputError(
+            f"{source}: no aerodynamic tables over Mach number and angle of attack; needed is {' or '.join(NAMES)}, a "
+            f".nc file of an aerodynamic model or a folder with {TABLE_SET_FILE}"
+        )
+    if named is None:
+        raise InputError(f"--vehicle: needed, for the reference lengths that the tables in {source} are made with")
+    return Source(read_table_set(path, named.reference), mass)
