@@ -5,8 +5,10 @@ set that it reaches in reversed time (Hu and Lin, Control Systems with Actuator 
 
     z = -integral of exp(-A t) B u(t) dt,  u within its limits.
 
-For one real root l this is |z| < b u_max / l. In general it is a linear programme in the history of the inputs, taken
-constant over short pieces: every history is admissible, so the answer is on the safe side.
+For one real root l this is |z| < b u_max / l. In general the bound along a direction d is the least support h(c) of
+the set over all c with c' d = 1, where h(c) is the integral of the greatest c' exp(-A t) B u. It is found by cutting
+planes: each c gives the bang-bang history that reaches farthest along it, and the hull of these bounds the answer from
+inside. Inputs are taken constant over short pieces of time, which is admissible, so the answer is on the safe side.
 """
 
 from __future__ import annotations
@@ -26,9 +28,13 @@ from spaceplane.dynamics.statespace import MOMENT_INPUTS, StateSpace
 from spaceplane.errors import InputError, unknown_name
 
 # A piece lasts this share of the time scale of the fastest mode still felt.
-_PIECE = 0.08
+_PIECE = 0.1
 # exp(-12): what comes later no longer matters.
 _FADED = 12.0
+# Cutting planes: relative width of the answer, most planes, and how far c may stray from its first guess.
+_CLOSE = 1e-5
+_MOST = 400
+_FAR = 1e4
 
 
 @dataclass(frozen=True)
@@ -61,24 +67,12 @@ def largest_held(system: StateSpace, limits: Authority, direction: Mapping[str, 
         raise InputError("direction: names no state that moves")
     part = unstable_part(plant, floor)
     target = part.rows @ along
-    reference = np.abs(part.rows) @ np.abs(along)
-    if not len(part.A) or (np.abs(target) <= 1e-12 * np.maximum(reference, 1e-300)).all():
+    size = np.abs(part.rows) @ np.abs(along)
+    if not len(part.A) or (np.abs(target) <= 1e-12 * np.maximum(size, 1e-300)).all():
         return Held(-math.inf, math.inf)
-    # Inputs in units of their limits: the solver drops coefficients that are small only by their units.
-    size = np.maximum(np.abs(limits.low), np.abs(limits.high))
-    columns = _reached(part) * size[:, None]
-    norm = np.abs(columns).sum(axis=(1, 2)) + np.abs(target)
-    matrix = np.column_stack([target / norm, columns.reshape(len(target), -1) / norm[:, None]])
-    pieces = columns.shape[2]
-    ranges = zip(limits.low / size, limits.high / size, strict=True)
-    bounds = [(None, None)] + [pair for pair in ranges for _ in range(pieces)]
-    ends = []
-    for sign in (1.0, -1.0):
-        cost = np.zeros(matrix.shape[1])
-        cost[0] = -sign
-        found = linprog(cost, A_eq=matrix, b_eq=np.zeros(len(target)), bounds=bounds, method="highs")
-        ends.append(float(found.x[0]) if found.status == 0 else sign * math.inf)
-    return Held(min(ends), max(ends))
+    reached = _reached(part)
+    ends = [_Hull(reached, sign * target).extent(limits.low, limits.high)[0] for sign in (-1.0, 1.0)]
+    return Held(-ends[0], ends[1])
 
 
 def thruster_to_hold(
@@ -108,23 +102,79 @@ def thruster_to_hold(
     target = part.rows @ checked_state(plant, offsets)
     if not len(part.A) or not target.any():
         return 0.0
-    columns = _reached(part)
-    inputs, pieces = columns.shape[1:]
-    # The thruster counts in units of the moment that would turn the first coordinate back alone.
-    unit = float(np.abs(target).max() / max(np.abs(columns[:, -1]).sum(axis=-1).max(), 1e-300))
-    columns[:, -1] *= unit
-    norm = np.abs(target) + np.abs(columns[:, -1]).sum(axis=-1)
-    matrix = np.column_stack([columns.reshape(len(target), -1) / norm[:, None], np.zeros(len(target))])
-    bounds = [pair for pair in zip(limits.low, limits.high, strict=True) for _ in range(pieces)]
-    bounds += [(None, None)] * pieces + [(0.0, None)]
-    rows = np.zeros((2 * pieces, matrix.shape[1]))
-    own = np.arange((inputs - 1) * pieces, inputs * pieces)
-    rows[np.arange(pieces), own], rows[pieces + np.arange(pieces), own] = 1.0, -1.0
-    rows[:, -1] = -1.0
-    cost = np.zeros(matrix.shape[1])
-    cost[-1] = 1.0
-    found = linprog(cost, rows, np.zeros(2 * pieces), A_eq=matrix, b_eq=-target / norm, bounds=bounds, method="highs")
-    return float(found.x[-1]) * unit if found.status == 0 else math.inf
+    hull = _Hull(_reached(part), target)
+    low, high, moment = np.append(limits.low, 0.0), np.append(limits.high, 0.0), 0.0
+    # The extent is concave in the moment, so Newton's method climbs to the least moment from below.
+    for _ in range(_MOST):
+        extent, along = hull.extent(low, high)
+        if extent >= 1.0 - _CLOSE:
+            return moment
+        gain = hull.support(along, low * 0, np.append(0 * limits.high, 1.0), symmetric=True)
+        if gain <= 1e-12 * hull.unit[-1]:
+            return math.inf
+        moment += max(1.0 - extent, _CLOSE) / gain
+        low[-1], high[-1] = -moment, moment
+    return math.inf
+
+
+class _Hull:
+    """The set of -z reached in reversed time, and how far it goes along a direction.
+
+    Args:
+        reached: [coordinate, input, piece] of `_reached`.
+        direction: [coordinate].
+    """
+
+    def __init__(self, reached: np.ndarray, direction: np.ndarray) -> None:
+        # Coordinates in which the set is about as wide one way as another, each input counted alike.
+        self.unit = np.sqrt((reached**2).sum(axis=2)).max(axis=0)
+        even = reached / np.maximum(self.unit, 1e-300)[:, None]
+        flat = even.reshape(len(reached), -1)
+        values, axes = np.linalg.eigh(flat @ flat.T)
+        kept = values > 1e-15 * values[-1]
+        whiten = axes[:, kept].T / np.sqrt(values[kept])[:, None]
+        self.outside = bool(np.linalg.norm(axes[:, ~kept].T @ direction) > 1e-7 * np.linalg.norm(direction))
+        self.columns = np.einsum("ck,kip->cip", whiten, reached)
+        self.direction = whiten @ direction
+
+    def support(self, along: np.ndarray, low: np.ndarray, high: np.ndarray, symmetric: bool = False) -> float:
+        """h(c) for inputs between `low` and `high`, or within +-`high`."""
+        push = np.einsum("c,cip->ip", along, -self.columns)
+        least = -high if symmetric else low
+        return float(np.maximum(push * least[:, None], push * high[:, None]).sum())
+
+    def farthest(self, along: np.ndarray, low: np.ndarray, high: np.ndarray) -> np.ndarray:
+        """[coordinate] the point of the set that lies farthest along c."""
+        push = np.einsum("c,cip->ip", along, -self.columns)
+        history = np.where(push > 0, high[:, None], low[:, None])
+        return -np.einsum("cip,ip->c", self.columns, history)
+
+    def extent(self, low: np.ndarray, high: np.ndarray) -> tuple[float, np.ndarray]:
+        """(greatest multiple of the direction in the set, the c of its supporting plane)."""
+        size = float(self.direction @ self.direction)
+        along = self.direction / size if size > 0 else self.direction
+        if self.outside or size == 0:
+            return 0.0, along
+        n = len(along)
+        # c in units of the first guess; the bounds only keep the first few planes finite.
+        scale = np.linalg.norm(along)
+        points, best, inner = [], (math.inf, along), 0.0
+        for _ in range(_MOST):
+            point = self.farthest(along, low, high)
+            points.append(point)
+            value = float(point @ along)
+            if value < best[0]:
+                best = value, along
+            height = max(best[0], 1e-300)
+            rows = np.column_stack([np.array(points) * scale / height, -np.ones(len(points))])
+            equal = np.append(self.direction * scale, 0.0)[None, :]
+            cost = np.append(np.zeros(n), 1.0)
+            bounds = [(-_FAR, _FAR)] * n + [(None, None)]
+            found = linprog(cost, rows, np.zeros(len(points)), equal, np.ones(1), bounds, method="highs")
+            inner, along = float(found.x[-1]) * height, found.x[:n] * scale
+            if best[0] - inner <= _CLOSE * best[0]:
+                break
+        return max(inner, 0.0), best[1]
 
 
 def _reached(part: Part) -> np.ndarray:
