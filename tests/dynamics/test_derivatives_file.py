@@ -191,3 +191,45 @@ def test_uncertainty_is_read_in_the_unit_of_the_derivatives():
 def test_bad_uncertainty_is_refused(table, match):
     with pytest.raises(InputError, match=match):
         derivatives_file.from_tables(uncertain(**table))
+
+
+def test_what_criteria_on_the_airframe_take_beside():
+    """Each of the table's keys moves a verdict."""
+    controls = {
+        "Cm_elevator": -0.002,
+        "CL_elevator": 0.004,
+        "Cl_aileron": 0.001,
+        "Cn_aileron": -0.0002,
+        "Cn_rudder": -0.001,
+    }
+    content = {**EXAMPLE_CONTENT, "derivatives": {**EXAMPLE_CONTENT["derivatives"], **controls}}
+
+    def verdicts(**table):
+        record = analyse_modes(derivatives_file.from_tables({**content, "airframe": table}))
+        return {(v["paragraph"], v["quantity"]): v for v in record["airframe_verdicts"]}
+
+    plain = verdicts()
+    trim = verdicts(Cm=0.01, elevator_deg=-3.0)["3.2.3.1", "elevator for trim"]
+    assert (
+        trim["value"] == pytest.approx(-3.0 + 0.01 / 0.002) and not plain["3.2.3.1", "elevator for trim"]["applicable"]
+    )
+    reach = verdicts(load_factors=[0.0, 2.5])["3.2.3.2", "greatest load factor"]
+    assert reach["applicable"] and not plain["3.2.3.2", "greatest load factor"]["applicable"]
+    bank = ("3.3.4", "time to bank by 30 deg")
+    assert verdicts(speed_range="L")[bank]["limits"] != plain[bank]["limits"]
+    lcdp = next(key for key in plain if key[1] == "LCDP")
+    assert verdicts(rudder_per_aileron=0.5)[lcdp]["value"] != plain[lcdp]["value"]
+
+
+@pytest.mark.parametrize(
+    ("table", "match"),
+    [
+        ({"load_factors": [1.0]}, "load_factors"),
+        ({"Cm": "x"}, "Cm"),
+        ({"elevator": 1.0}, "elevator_deg"),
+        ({"speed_range": "X"}, "speed_range"),
+    ],
+)
+def test_bad_airframe_is_refused(table, match):
+    with pytest.raises(InputError, match=match):
+        analyse_modes(derivatives_file.from_tables({**EXAMPLE_CONTENT, "airframe": table}))

@@ -26,6 +26,8 @@ FLIGHT_REQUIRED = ("mach", "altitude_m", "alpha_deg", "gamma_deg", "bank_deg", "
 FLIGHT_OPTIONAL = ("pressure_Pa", "temperature_K")
 VEHICLE_REQUIRED = ("mass_kg", "Ixx_kgm2", "Iyy_kgm2", "Izz_kgm2", "area_m2", "c_ref_m", "b_ref_m")
 SAMPLES = 2000
+AIRFRAME_NUMBERS = ("Cm", "elevator_deg", "rudder_per_aileron")
+AIRFRAME_KEYS = ("load_factors", "speed_range")
 UNCERTAINTY_KEYS = ("correlation", "samples", "seed")
 MODEL_KEYS = ("form", "density_gradient", "gyroscopic", "vehicle_class", "category")
 
@@ -49,6 +51,8 @@ class ModesCase:
         correlation: pairs of uncertain names to coefficient of correlation.
         samples: draws for probabilities.
         seed: of the draws.
+        airframe: what criteria on the airframe take beside: `pitching_moment`, `elevator` (rad), `load_factors` (g),
+            `speed_range`, `rudder_per_aileron`, each only where it is given.
     """
 
     point: FlightPoint
@@ -65,6 +69,7 @@ class ModesCase:
     correlation: Mapping[tuple[str, str], float] = field(default_factory=dict)
     samples: int = SAMPLES
     seed: int = 0
+    airframe: Mapping[str, object] = field(default_factory=dict)
 
 
 def read(path: str | Path) -> ModesCase:
@@ -93,7 +98,7 @@ def from_tables(content: Mapping[str, object]) -> ModesCase:
     Raises:
         InputError: an unknown or missing table or key, or a value that is no finite number or out of its limits.
     """
-    _known("", content, ("flight", "vehicle", "derivatives", "model", "uncertainty"))
+    _known("", content, ("flight", "vehicle", "derivatives", "model", "uncertainty", "airframe"))
     flight = _numbers(content, "flight", FLIGHT_REQUIRED, FLIGHT_OPTIONAL)
     vehicle = _numbers(content, "vehicle", VEHICLE_REQUIRED, ())
     for name, value in vehicle.items():
@@ -112,6 +117,7 @@ def from_tables(content: Mapping[str, object]) -> ModesCase:
         category=category,
         given={key: dict(_table(content, key)) for key in content},
         **_uncertainty(content),
+        airframe=_airframe(content),
     )
 
 
@@ -123,6 +129,31 @@ def _derivatives(content: Mapping[str, object]) -> Derivatives:
         raise InputError(f"[derivatives] unit = {table['unit']!r}: must be one of {', '.join(UNITS)}")
     values = _numbers(content, "derivatives", STATIC, (*DAMPING, *CONTROL_DERIVATIVES), ignore=("unit",))
     return from_mapping(per_radian(values) if table["unit"] == "per_degree" else values)
+
+
+def _airframe(content: Mapping[str, object]) -> dict[str, object]:
+    if "airframe" not in content:
+        return {}
+    table = _table(content, "airframe")
+    numbers = _numbers(content, "airframe", (), AIRFRAME_NUMBERS, ignore=AIRFRAME_KEYS)
+    found: dict[str, object] = {}
+    if "Cm" in numbers:
+        found["pitching_moment"] = numbers["Cm"]
+    if "elevator_deg" in numbers:
+        found["elevator"] = math.radians(numbers["elevator_deg"])
+    if "rudder_per_aileron" in numbers:
+        found["rudder_per_aileron"] = numbers["rudder_per_aileron"]
+    if "speed_range" in table:
+        found["speed_range"] = table["speed_range"]
+    if "load_factors" in table:
+        pair = table["load_factors"]
+        good = isinstance(pair, list) and len(pair) == 2
+        if not (good and all(isinstance(x, int | float) and not isinstance(x, bool) for x in pair)):
+            raise InputError(
+                f"[airframe] load_factors = {pair!r}: must be two numbers, a least below 1 g and a greatest"
+            )
+        found["load_factors"] = (float(pair[0]), float(pair[1]))
+    return found
 
 
 def _uncertainty(content: Mapping[str, object]) -> dict:

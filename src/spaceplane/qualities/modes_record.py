@@ -46,7 +46,7 @@ def analyse_modes(case: ModesCase) -> dict:
     rates = equilibrium_rates(case.point, case.mass.mass, case.reference.area)
     model = (case.point, case.mass, case.reference, case.derivatives)
     how = (case.form, case.density_gradient, case.gyroscopic)
-    airframe, judged = Airframe(*model), (case.vehicle_class, case.category)
+    airframe, judged = Airframe(*model, **case.airframe), (case.vehicle_class, case.category)
     verdicts += assess_airframe(airframe, *judged, system)
     uncertainty = Uncertainty(case.uncertainty, case.correlation) if case.uncertainty else None
     chances = ()

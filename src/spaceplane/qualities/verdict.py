@@ -18,10 +18,10 @@ class Verdict:
     """One criterion on one mode.
 
     Attributes:
-        mode: name of the mode, or of the mode that the criterion asks for and that is absent.
+        mode: name of the mode, or of the mode that the criterion asks for and that is absent; "airframe" for none.
         criterion: title of the criterion.
         quantity: what is measured, for example "damping ratio".
-        paragraph: of MIL-F-8785C.
+        paragraph: of MIL-F-8785C, or the source of another criterion.
         vehicle_class: I, II-L, II-C, III or IV.
         category: flight phase category A, B or C.
         value: measured value; None if there is none.
