@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from dynamics import horus
+from spaceplane.aero.model.published import horus_2b_published
 from spaceplane.decks.tables import linear_dataset, write_linear_csv, write_linear_netcdf, write_model_csv
 from spaceplane.dynamics.linearise import linearise
 from spaceplane.dynamics.statespace import from_matrix
@@ -55,6 +56,13 @@ def test_model_csv_holds_every_value(tmp_path):
     assert limits["mach"] == (1.5, 20.0, "1") and limits["body_flap"] == (-20.0, 30.0, "deg")
     text = (tmp_path / "README.txt").read_text()
     assert model.source in text and "wind axes" in text and "13 m behind the nose" in text and "Cl_body_flap" in text
+
+
+def test_unknown_surfaces_are_named_whole(tmp_path):
+    write_model_csv(horus_2b_published(), tmp_path)
+    line = (tmp_path / "README.txt").read_text().splitlines()[-1]
+    assert line.startswith("unknown and counted as zero: CL_q, Cm_q, ")
+    assert line.endswith("Cn_body_flap, all of rudder_left, all of rudder_right") and "CL_rudder" not in line
 
 
 def test_linear_csv_rebuilds_the_matrices(systems, tmp_path):

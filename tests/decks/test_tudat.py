@@ -108,7 +108,7 @@ def test_readme_states_axes_units_reference_and_limits(written):
         "positive along the negative axes",
         "rad",
         "reference_length 23 m, reference_area 110 m2",
-        "moment_reference_point -13, 0, 0 m in body axes",
+        "moment_reference_point -13, 0, 0 m, body axes, from the nose",
         "mach 1.5 to 20",
         "beta -10 to 10 deg",
         "elevon_left -40 to 40 deg",

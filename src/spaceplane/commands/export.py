@@ -12,10 +12,7 @@ from spaceplane.commands.arguments import numbers, writable_file, write_json
 from spaceplane.errors import InputError
 from spaceplane.files import writable_folder
 
-EXAMPLE = (
-    "Example: spaceplane export csv out/horus-2b --out tables\n\n"
-    "Example: spaceplane export jsbsim horus-2b-published --out aircraft"
-)
+EXAMPLE = "Example: spaceplane export jsbsim horus-2b-published --out aircraft"
 FORMATS = ("jsbsim", "tudat", "csv", "netcdf")
 TABLES = ("csv", "netcdf")
 """Formats that an analysis has as well as a model."""
@@ -27,8 +24,8 @@ def export(
         str,
         typer.Argument(
             metavar="SOURCE",
-            help="Aerodynamic model: horus-2b-published, a .nc file or a folder of tables; for csv and netcdf also a "
-            "folder that `spaceplane analyse` wrote.",
+            help="Aerodynamic model: horus-2b-published, a .nc file, a .toml file of derivatives (of `modes`; linear) "
+            "or a folder of tables; for csv and netcdf also a folder that `spaceplane analyse` wrote.",
         ),
     ],
     out: Annotated[

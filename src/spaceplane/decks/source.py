@@ -9,6 +9,8 @@ from spaceplane.aero.model import netcdf
 from spaceplane.aero.model.model import AeroModel
 from spaceplane.aero.model.published import horus_2b_published
 from spaceplane.aero.model.table_set import read_table_set
+from spaceplane.decks.about_point import model_about
+from spaceplane.dynamics import derivatives_file
 from spaceplane.errors import InputError, unknown_name
 from spaceplane.vehicle import presets
 from spaceplane.vehicle.properties import MassProperties
@@ -32,8 +34,8 @@ class Source:
 
 
 def is_model(source: str) -> bool:
-    """Whether a source is a model by its name, `.nc` file or folder of tables, not the folder of an analysis."""
-    return source in NAMES or source.lower().endswith(".nc") or is_table_set(source)
+    """Whether a source is a model: by its name, a `.nc` or `.toml` file or a folder of tables, not an analysis."""
+    return source in NAMES or source.lower().endswith((".nc", ".toml")) or is_table_set(source)
 
 
 def is_table_set(source: str) -> bool:
@@ -42,10 +44,11 @@ def is_table_set(source: str) -> bool:
 
 
 def read_source(source: str, vehicle: str | None = None) -> Source:
-    """An aerodynamic model by name, from a `.nc` file or from a folder of tables.
+    """An aerodynamic model by name, from a file or from a folder of tables.
 
     Args:
-        source: a name of `NAMES`, a file that `aero.model.netcdf.save` wrote, or a folder in the layout of
+        source: a name of `NAMES`, a `.nc` file that `aero.model.netcdf.save` wrote, a `.toml` file of derivatives
+            (`dynamics.derivatives_file`; linear about its flight point), or a folder in the layout of
             `aero.model.table_set`.
         vehicle: preset or YAML file that the mass and, for a folder of tables, the reference lengths are of; HORUS-2B
             for its published tables by default.
@@ -53,19 +56,24 @@ def read_source(source: str, vehicle: str | None = None) -> Source:
     Raises:
         InputError: no such source, one that cannot be read, or a folder of tables without a vehicle.
     """
+    if source.lower().endswith(".toml"):
+        if vehicle is not None:
+            raise InputError(f"--vehicle: {source} has its own vehicle")
+        case = derivatives_file.read(source)
+        return Source(model_about(case), case.mass)
     named = presets.load(vehicle) if vehicle else None
     if source == PUBLISHED:
         return Source(horus_2b_published(), (named or presets.horus_2b()).mass)
     path = Path(source)
     if not path.exists():
-        raise InputError(f"{unknown_name('source', source, NAMES)} (or give a .nc file or a folder of tables)")
+        raise InputError(f"{unknown_name('source', source, NAMES)} (or give a .nc or .toml file or a folder of tables)")
     mass = named.mass if named else None
     if path.is_file() and path.suffix.lower() == ".nc":
         return Source(netcdf.load(path), mass)
     if not is_table_set(source):
         raise InputError(
             f"{source}: no aerodynamic tables over Mach number and angle of attack; needed is {' or '.join(NAMES)}, a "
-            f".nc file of an aerodynamic model or a folder with {TABLE_SET_FILE}"
+            f".nc file of an aerodynamic model, a .toml file of derivatives or a folder with {TABLE_SET_FILE}"
         )
     if named is None:
         raise InputError(f"--vehicle: needed, for the reference lengths that the tables in {source} are made with")

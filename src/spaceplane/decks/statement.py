@@ -60,7 +60,9 @@ def limit_lines(model: AeroModel) -> list[str]:
 
 def unknown_line(model: AeroModel) -> str:
     """What the model does not know and counts as zero."""
-    unknown = model.unknown()
+    missing = [name for name in CONTROLS if name not in model.surfaces]
+    unknown = [name for name in model.unknown() if not name.endswith(tuple(f"_{surface}" for surface in missing))]
+    unknown += [f"all of {surface}" for surface in missing]
     return "unknown and counted as zero: " + (", ".join(unknown) if unknown else "nothing")
 
 

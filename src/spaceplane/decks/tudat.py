@@ -154,8 +154,8 @@ def _readme(model: AeroModel, full: AeroModel, files: tuple[str, ...]) -> str:
         f"    reference_length {r.chord:.10g} m, reference_area {r.area:.10g} m2",
         "    force_coefficients_frame  negative_aerodynamic_frame_coefficients",
         "    moment_coefficients_frame positive_body_fixed_frame_coefficients",
-        f"    moment_reference_point    {-x + 0.0:.10g}, {y:.10g}, {-z + 0.0:.10g} m in body axes from the nose;",
-        "      from another origin, shift it as your centre of mass",
+        f"    moment_reference_point    {-x + 0.0:.10g}, {y:.10g}, {-z + 0.0:.10g} m, body axes, from the nose; where",
+        "      your centre of mass is given from another point, give this from there too",
     ]
     if surfaces:
         lines += [
@@ -182,8 +182,8 @@ def _readme(model: AeroModel, full: AeroModel, files: tuple[str, ...]) -> str:
         "Reference",
         *(f"  {line}" for line in statement.reference_lines(full)),
         "",
-        "Limits: the data hold inside these only. Tudat extrapolates unless its interpolator settings say otherwise:",
-        "set their boundary_interpolation to throw_exception_at_boundary.",
+        "Limits: the data hold inside these only. Set the boundary_interpolation of Tudat's interpolator settings to",
+        "throw_exception_at_boundary, or it may go on outside without a word.",
         *(f"  {line}" for line in statement.limit_lines(full)),
         *(f"  {line}" for line in [statement.cut_line(model, full)] if line),
         "",
