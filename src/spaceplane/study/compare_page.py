@@ -5,48 +5,10 @@ from __future__ import annotations
 import html
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
 
 from spaceplane.files import json_text, told, write_text
-
-BETTER, WORSE = "better", "worse"
-
-_STYLE = """
-:root{color-scheme:light dark;--ink:#1c1f24;--paper:#fff;--line:#d9dde3;--soft:#667;--band:#f5f6f8;
---good:#1b7837;--bad:#b2182b}
-@media(prefers-color-scheme:dark){:root{--ink:#e6e8eb;--paper:#16181c;--line:#363a42;--soft:#9aa;--band:#1d2026;
---good:#6fcf8a;--bad:#ff8a80}}
-body{font:15px/1.5 system-ui,sans-serif;color:var(--ink);background:var(--paper);max-width:1100px;margin:2rem auto;
-padding:0 1.2rem}
-h1{font-size:1.6rem;margin:0 0 .3rem}h2{margin:2.2rem 0 .4rem;font-size:1.2rem}h3{margin:1.3rem 0 .3rem;font-size:1rem}
-p{margin:.3rem 0 .8rem;color:var(--soft)}div.scroll{overflow-x:auto}
-table{border-collapse:collapse;font-variant-numeric:tabular-nums;min-width:60%}
-th,td{padding:.28rem .8rem;text-align:right;border-bottom:1px solid var(--line);white-space:nowrap}
-th{font-weight:600;color:var(--soft)}td:first-child,th:first-child{text-align:left;padding-left:.2rem}
-td.text,th.text{text-align:left}tr:hover td{background:var(--band)}
-.better{color:var(--good);font-weight:600}.worse{color:var(--bad);font-weight:600}
-img{max-width:100%;background:#fff;border-radius:6px}ul{padding-left:1.2rem}
-"""
-
-
-@dataclass(frozen=True)
-class Table:
-    """One table of a comparison.
-
-    Attributes:
-        title: heading.
-        level: of the heading, 2 or 3.
-        note: a line on what the table shows.
-        columns: headings.
-        rows: texts, one for each column.
-    """
-
-    title: str
-    level: int
-    note: str
-    columns: tuple[str, ...]
-    rows: tuple[tuple[str, ...], ...]
+from spaceplane.report.plain_page import Table, document, picture_html, table_html
 
 
 def tables(comparison: dict) -> list[Table]:
@@ -93,21 +55,9 @@ def as_html(comparison: dict, picture_svg: str = "") -> str:
     if comparison["warnings"]:
         parts.append("<ul>" + "".join(f"<li>{html.escape(line)}</li>" for line in comparison["warnings"]) + "</ul>")
     if picture_svg:
-        import base64
-
-        data = base64.b64encode(picture_svg.encode()).decode()
-        parts.append(f'<img alt="Eigenvalues of both by Mach number" src="data:image/svg+xml;base64,{data}">')
-    for table in tables(comparison):
-        parts.append(f"<h{table.level}>{html.escape(table.title)}</h{table.level}>")
-        parts += [f"<p>{html.escape(table.note)}</p>"] if table.note else []
-        head = "".join(f"<th>{html.escape(cell)}</th>" for cell in table.columns)
-        body = "".join("<tr>" + "".join(_cell(cell) for cell in row) + "</tr>" for row in table.rows)
-        parts.append(f'<div class="scroll"><table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table></div>')
-    return (
-        '<!doctype html><html lang="en"><head><meta charset="utf-8"><meta name="viewport" '
-        f'content="width=device-width"><title>{html.escape(_headline(comparison))}</title><style>{_STYLE}</style></head>'
-        f"<body>{''.join(parts)}</body></html>\n"
-    )
+        parts.append(picture_html(picture_svg.encode(), "Eigenvalues of both by Mach number", "svg+xml"))
+    parts += [table_html(table) for table in tables(comparison)]
+    return document(_headline(comparison), parts)
 
 
 def write(comparison: dict, out_dir: Path | str) -> dict[str, Path]:
@@ -317,8 +267,3 @@ def _criterion(row: dict) -> str:
 
 def _level(level: int | str | None) -> str:
     return "n/a" if level is None else str(level)
-
-
-def _cell(text: str) -> str:
-    style = f' class="{text}"' if text in (BETTER, WORSE) else ""
-    return f"<td{style}>{html.escape(text)}</td>"

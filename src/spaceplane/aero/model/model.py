@@ -194,7 +194,8 @@ class AeroModel:
                 slope = node_slope(surface.deflection, values, place.get(name, 0.0))
                 controls[f"{coefficient}_{name}"] = self._known(f"{coefficient} of {name}", slope, mach, alpha)
         lateral = {"CY_beta": 0.0, "Cl_beta": 0.0, "Cn_beta": 0.0}
-        return Derivatives(**{**static, **lateral, **rest}, controls=controls)
+        plain = {name: float(value) for name, value in (static | lateral | rest).items()}
+        return Derivatives(**plain, controls={name: float(value) for name, value in controls.items()})
 
     def moved(self, center: tuple[float, float, float]) -> AeroModel:
         """The same aerodynamics about another moment centre; see `spaceplane.aero.model.move`.

@@ -1,0 +1,172 @@
+"""Flight dynamics along a descent from aerodynamic tables, without any flow computation."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from spaceplane.aero.model.model import AeroModel, OutsideTables
+from spaceplane.dynamics.flightpoint import TAEM_BANK_DEG, TAEM_GAMMA_DEG, FlightPoint, taem_point
+from spaceplane.dynamics.linearise import FORMS, linearise
+from spaceplane.dynamics.modes import Mode
+from spaceplane.dynamics.statespace import StateSpace
+from spaceplane.dynamics.tracking import Branches, follow, interpolated
+from spaceplane.dynamics.trim.longitudinal import PitchTrim, trim_elevator
+from spaceplane.dynamics.trim.maps import trim_map
+from spaceplane.errors import InputError
+from spaceplane.progress import Progress, silent
+from spaceplane.qualities import limits
+from spaceplane.qualities.airframe import Airframe
+from spaceplane.qualities.probability import assess_all
+from spaceplane.qualities.verdict import Verdict
+from spaceplane.vehicle.properties import MassProperties
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+MACHS = (1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 7.5, 10.0, 12.5, 15.0, 17.5, 20.0)
+MAP_STEP = math.radians(1.0)
+"""Step of the trim map in angle of attack, rad."""
+
+
+@dataclass(frozen=True)
+class DescentSettings:
+    """How a descent is flown.
+
+    Attributes:
+        machs: increasing Mach numbers; altitude (thesis Table 4.1) and angle of attack follow from each.
+        gamma_deg, bank_deg: flight-path and bank angle, deg, at every Mach number.
+        body_flap: rad, everywhere; None chooses the one that leaves the elevator the largest margin.
+        form: of the linear model, see `dynamics.linearise.FORMS`.
+        vehicle_class, category: of MIL-F-8785C.
+
+    Raises:
+        InputError: Mach numbers that do not increase, or an unknown form, class or category.
+    """
+
+    machs: Sequence[float] = MACHS
+    gamma_deg: float = TAEM_GAMMA_DEG
+    bank_deg: float = TAEM_BANK_DEG
+    body_flap: float | None = None
+    form: str = FORMS[0]
+    vehicle_class: str = "III"
+    category: str = "B"
+
+    def __post_init__(self) -> None:
+        machs = np.asarray(self.machs, dtype=float)
+        if machs.ndim != 1 or not len(machs) or not (np.diff(machs) > 0.0).all():
+            raise InputError(f"mach = {', '.join(f'{m:g}' for m in machs.ravel())}: increasing values are needed")
+        if self.form not in FORMS:
+            raise InputError(f"form = {self.form!r}: must be one of {', '.join(FORMS)}")
+        limits.check(self.vehicle_class, self.category)
+
+
+@dataclass(frozen=True)
+class DescentPoint:
+    """What was found at one Mach number.
+
+    Attributes:
+        point: flight point; with the trimmed CL and CD where there is a trim.
+        trim: the one with the largest margin; None where there is none.
+        system: linear model about the trim; None without.
+        modes, verdicts: of it.
+        reason: why there is no trim or no linear model; empty where there is.
+    """
+
+    point: FlightPoint
+    trim: PitchTrim | None = None
+    system: StateSpace | None = None
+    modes: tuple[Mode, ...] = ()
+    verdicts: tuple[Verdict, ...] = ()
+    reason: str = ""
+
+
+@dataclass(frozen=True)
+class Descent:
+    """Trim, modes and flying qualities along a descent.
+
+    Attributes:
+        model: tables it is made of.
+        mass: kg, kg m2.
+        settings: how it is flown.
+        trim_map: over Mach number and angle of attack, see `dynamics.trim.maps.trim_map`.
+        points: by Mach number.
+        branches: modes followed along the Mach number; None where fewer than two neighbours have a linear model.
+    """
+
+    model: AeroModel
+    mass: MassProperties
+    settings: DescentSettings
+    trim_map: xr.Dataset
+    points: tuple[DescentPoint, ...]
+    branches: Branches | None = field(default=None)
+
+
+def descend(
+    model: AeroModel, mass: MassProperties, settings: DescentSettings | None = None, progress: Progress | None = None
+) -> Descent:
+    """Trim map, then trim, linear model, modes and verdicts at every Mach number, and the modes followed between them.
+
+    Nothing is extrapolated: a Mach number at which the tables hold no trim is told with the reason.
+
+    Args:
+        model: aerodynamics about the centre of mass.
+        mass: kg, kg m2.
+        settings: defaults when None.
+        progress: called with (phase, done, total, text).
+
+    Raises:
+        InputError: a Mach number outside the descent of the thesis, or a model without elevons.
+    """
+    settings = settings or DescentSettings()
+    say = progress or silent
+    points = [taem_point(m, gamma_deg=settings.gamma_deg, bank_deg=settings.bank_deg) for m in settings.machs]
+    say("trim map", 0, 1, "")
+    within = [m for m in settings.machs if model.mach[0] <= m <= model.mach[-1]]
+    machs = np.unique(np.concatenate([model.mach, within]))
+    alphas = np.arange(model.alpha[0], model.alpha[-1] + 0.5 * MAP_STEP, MAP_STEP)
+    found = trim_map(model, machs.tolist(), alphas.clip(max=model.alpha[-1]).tolist(), settings.body_flap)
+    flown = []
+    for number, point in enumerate(points):
+        say("flight dynamics", number, len(points), point.name)
+        flown.append(_at(model, mass, point, settings))
+    return Descent(model, mass, settings, found, tuple(flown), _followed(flown))
+
+
+def _at(model: AeroModel, mass: MassProperties, point: FlightPoint, settings: DescentSettings) -> DescentPoint:
+    """Trim, linear model, modes and verdicts at one flight point."""
+    trims = trim_elevator(model, point.mach, point.alpha, settings.body_flap)
+    trim = trims.best
+    if trim is None:
+        return DescentPoint(point, reason=trims.reason)
+    deflections = {"elevon_left": trim.elevator, "elevon_right": trim.elevator}
+    if "body_flap" in model.surfaces:
+        deflections["body_flap"] = trim.body_flap
+    point = point.with_coefficients(trim.CL, trim.CD)
+    try:
+        derivatives = model.derivatives(point.mach, point.alpha, deflections)
+    except OutsideTables as error:
+        return DescentPoint(point, trim, reason=f"outside the tables: {error}")
+    system = linearise(point, mass, model.reference, derivatives, settings.form)
+    airframe = Airframe(point, mass, model.reference, derivatives, 0.0, trim.elevator)
+    assessed = assess_all(airframe, settings.vehicle_class, settings.category, settings.form)
+    return DescentPoint(point, trim, system, assessed.modes, assessed.verdicts)
+
+
+def _followed(points: Sequence[DescentPoint]) -> Branches | None:
+    """Modes along the Mach number through the longest run of neighbours that have a linear model."""
+    runs: list[list[DescentPoint]] = [[]]
+    for one in points:
+        if one.system is None:
+            runs.append([])
+        else:
+            runs[-1].append(one)
+    longest = max(runs, key=len)
+    if len(longest) < 2:
+        return None
+    grid = [one.point.mach for one in longest]
+    return follow(interpolated(grid, [one.system for one in longest]), grid, "mach")

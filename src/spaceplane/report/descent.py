@@ -1,0 +1,223 @@
+"""A descent flown from tables, for people and machines: JSON, trim map as NetCDF, pictures and one HTML page."""
+
+from __future__ import annotations
+
+import html
+import io
+import math
+from pathlib import Path
+
+from spaceplane import __version__
+from spaceplane.analysis.descent import Descent, DescentPoint
+from spaceplane.dynamics.modes import Mode, to_record
+from spaceplane.files import json_text, renamed_when_done, told, write_text
+from spaceplane.plain import finite
+from spaceplane.qualities.verdict import Verdict
+from spaceplane.qualities.verdict import to_record as verdict_record
+from spaceplane.report.figures_dynamics import over_parameter, phasors, root_locus
+from spaceplane.report.plain_page import Table, document, picture_html, table_html
+from spaceplane.report.read import level_text
+from spaceplane.report.trim_figures import trim_map_figure
+
+SCHEMA, SCHEMA_VERSION = "spaceplane.descent", 1
+LEVELS = ("3.2.1.1", "3.2.1.2", "3.2.2.1.1", "3.2.2.1.2", "3.3.1.1", "3.3.1.2", "3.3.1.3", "3.3.1.4")
+"""Paragraphs on modes, in the order of the table of levels."""
+
+
+def write(descent: Descent, out_dir: Path | str) -> dict[str, Path]:
+    """Write descent.json, trim.nc, the pictures and descent.html; return their paths by name.
+
+    Raises:
+        InputError: the folder cannot be written.
+    """
+    folder = Path(out_dir)
+    drawn = pictures(descent)
+    paths = {"json": folder / "descent.json", "trim": folder / "trim.nc", "html": folder / "descent.html"}
+    paths |= {name: folder / f"{name}.png" for name in drawn}
+    with told(folder):
+        write_text(json_text(record(descent)), paths["json"])
+        with renamed_when_done(paths["trim"]) as partial:
+            descent.trim_map.to_netcdf(partial, engine="netcdf4")
+        for name, data in drawn.items():
+            with renamed_when_done(paths[name]) as partial:
+                partial.write_bytes(data)
+        write_text(page(descent, drawn), paths["html"])
+    return paths
+
+
+def record(descent: Descent) -> dict:
+    """The descent as plain JSON types, angles in degrees."""
+    settings = descent.settings
+    return {
+        "schema": SCHEMA,
+        "schema_version": SCHEMA_VERSION,
+        "version": __version__,
+        "model": descent.model.name,
+        "source": descent.model.source,
+        "unknown": list(descent.model.unknown()),
+        "gamma_deg": settings.gamma_deg,
+        "bank_deg": settings.bank_deg,
+        "form": settings.form,
+        "class": settings.vehicle_class,
+        "category": settings.category,
+        "points": [_point_record(one) for one in descent.points],
+        "events": [
+            {
+                "kind": event.kind,
+                "mach": event.parameter,
+                "branches": list(event.branches),
+                "before": list(event.before),
+                "after": list(event.after),
+            }
+            for event in (descent.branches.events if descent.branches else ())
+        ],
+    }
+
+
+def _point_record(one: DescentPoint) -> dict:
+    point, trim = one.point, one.trim
+    return {
+        "mach": point.mach,
+        "altitude_m": point.altitude,
+        "alpha_deg": math.degrees(point.alpha),
+        "dynamic_pressure_Pa": point.dynamic_pressure,
+        "reason": one.reason,
+        "trim": trim
+        and {
+            "elevator_deg": math.degrees(trim.elevator),
+            "body_flap_deg": math.degrees(trim.body_flap),
+            "margin_deg": math.degrees(trim.margin),
+            "CL": trim.CL,
+            "CD": trim.CD,
+            "lift_to_drag": finite(trim.lift_to_drag),
+            "static_margin": finite(trim.static.margin),
+            "Cm_alpha": finite(trim.static.Cm_alpha),
+        },
+        "modes": [to_record(mode) for mode in one.modes],
+        "verdicts": [verdict_record(verdict) for verdict in one.verdicts],
+    }
+
+
+def pictures(descent: Descent) -> dict[str, bytes]:
+    """PNG by name: trim map, root locus, eigenvalues by Mach number and, at the slowest point, eigenvectors."""
+    data = io.BytesIO()
+    trim_map_figure(descent.trim_map).savefig(data, format="png", dpi=130, bbox_inches="tight")
+    drawn = {"trim-map": data.getvalue()}
+    if descent.branches is not None:
+        drawn["root-locus"] = root_locus(descent.branches)
+        drawn["modes-by-mach"] = over_parameter(descent.branches)
+    flown = [one for one in descent.points if one.modes]
+    if flown:
+        drawn["eigenvectors"] = phasors(flown[0].modes, flown[0].point.velocity)
+    return drawn
+
+
+def page(descent: Descent, drawn: dict[str, bytes]) -> str:
+    """The HTML page, with the pictures in it."""
+    title = f"{descent.model.name}: trim, modes and flying qualities"
+    settings = descent.settings
+    told_first = (
+        f"Source: {descent.model.source}. Path angle {settings.gamma_deg:g} deg, bank {settings.bank_deg:g} deg at "
+        f"every Mach number; altitude of thesis Table 4.1; MIL-F-8785C class {settings.vehicle_class}, category "
+        f"{settings.category}."
+    )
+    unknown = f"Not in the tables and taken as zero: {', '.join(descent.model.unknown()) or 'nothing'}."
+    parts = [f"<h1>{html.escape(title)}</h1>", *(f"<p>{html.escape(text)}</p>" for text in (told_first, unknown))]
+    for table in tables(descent):
+        parts.append(table_html(table))
+        parts += [picture_html(drawn[name], text) for name, text in _BELOW.get(table.title, ()) if name in drawn]
+    return document(title, parts)
+
+
+_BELOW = {
+    "Trim": [("trim-map", "Trim over Mach number and angle of attack")],
+    "Modes": [
+        ("modes-by-mach", "Eigenvalues by Mach number"),
+        ("root-locus", "Root locus along the descent"),
+        ("eigenvectors", "Eigenvectors at the slowest flight point"),
+    ],
+}
+
+
+def tables(descent: Descent) -> list[Table]:
+    """Trim, modes and levels by Mach number."""
+    return [_trims(descent), _modes(descent), *_events(descent), _levels(descent)]
+
+
+def _trims(descent: Descent) -> Table:
+    columns = (
+        "Mach",
+        "altitude, km",
+        "alpha, deg",
+        "elevator, deg",
+        "body flap, deg",
+        "margin, deg",
+        "CL",
+        "CD",
+        "L/D",
+    )
+    rows = []
+    for one in descent.points:
+        start = (f"{one.point.mach:g}", f"{one.point.altitude / 1e3:.1f}", f"{math.degrees(one.point.alpha):.1f}")
+        if one.trim is None:
+            rows.append((*start, one.reason, *("-",) * 6))
+            continue
+        t = one.trim
+        angles = (f"{math.degrees(value):.1f}" for value in (t.elevator, t.body_flap, t.margin))
+        forces = f"{t.CL:.3f}", f"{t.CD:.3f}", f"{t.lift_to_drag:.2f}"
+        rows.append((*start, *angles, *forces, f"{100.0 * t.static.margin:+.1f} %"))
+    note = "The trim with the largest margin of the elevator to its nearer limit. Outside the tables there is none."
+    return Table("Trim", 2, note, columns, tuple(rows))
+
+
+def _modes(descent: Descent) -> Table:
+    rows = [
+        (f"{one.point.mach:g}", mode.name, _eigenvalue(mode), _pace(mode))
+        for one in descent.points
+        for mode in one.modes
+        if mode.kind != "neutral"
+    ]
+    return Table("Modes", 2, "", ("Mach", "mode", "eigenvalue, 1/s", "half or double time, damping"), tuple(rows))
+
+
+def _events(descent: Descent) -> list[Table]:
+    if descent.branches is None:
+        return []
+    rows = [
+        (f"{e.parameter:.2f}", e.kind, " and ".join(e.branches), " and ".join(e.before), " and ".join(e.after))
+        for e in descent.branches.events
+        if e.kind != "name"
+    ]
+    note = "Where eigenvalues meet, part or turn from decay to growth; between flight points A and B are linear."
+    return [Table("Events along the descent", 3, note, ("Mach", "event", "branches", "before", "after"), tuple(rows))]
+
+
+def _levels(descent: Descent) -> Table:
+    machs = tuple(f"Mach {one.point.mach:g}" for one in descent.points)
+    keys = dict.fromkeys((v.criterion, v.paragraph) for one in descent.points for v in one.verdicts if v.applicable)
+    rows = [
+        (f"{criterion} ({paragraph})", *(_worst(one.verdicts, criterion, paragraph) for one in descent.points))
+        for criterion, paragraph in sorted(keys, key=lambda key: (key[1] not in LEVELS, key[1]))
+    ]
+    note = "The worst level of each criterion; - where it does not apply, for the reasons in descent.json."
+    return Table("Levels of MIL-F-8785C and departure criteria", 2, note, ("criterion", *machs), tuple(rows))
+
+
+def _worst(verdicts: tuple[Verdict, ...], criterion: str, paragraph: str) -> str:
+    levels = [v.level for v in verdicts if (v.criterion, v.paragraph) == (criterion, paragraph) and v.applicable]
+    known = [level for level in levels if level is not None]
+    if not known:
+        return "-"
+    return level_text(max(known, key=lambda level: 4 if isinstance(level, str) else level))
+
+
+def _eigenvalue(mode: Mode) -> str:
+    value = mode.eigenvalue
+    return f"{value.real:.4g} ± {value.imag:.4g}i" if mode.oscillatory else f"{value.real:.4g}"
+
+
+def _pace(mode: Mode) -> str:
+    parts = [f"½ {mode.half_time:.3g} s"] if mode.half_time else []
+    parts += [f"2 {mode.double_time:.3g} s"] if mode.double_time else []
+    parts += [f"ζ {mode.damping_ratio:.3f}"] if mode.damping_ratio is not None else []
+    return ", ".join(parts) or "-"
