@@ -22,6 +22,7 @@ sys.path.insert(0, str(DOCS))
 
 import blocks  # noqa: E402  (beside this script)
 import fast_tier_blocks  # noqa: E402
+import linear_model_blocks  # noqa: E402
 import performance_blocks  # noqa: E402
 import real_gas_blocks  # noqa: E402
 import study_blocks  # noqa: E402
@@ -30,7 +31,16 @@ import uncertainty_blocks  # noqa: E402
 PAGES = [*sorted(DOCS.rglob("*.md")), DOCS.parent / "README.md"]
 PATTERN = re.compile(r"(<!-- generated: ([a-z0-9 -]+) -->\n).*?(<!-- end generated -->)", re.DOTALL)
 BLOCKS: dict[str, Callable[[], str]] = {}
-for _module in (blocks, study_blocks, fast_tier_blocks, performance_blocks, real_gas_blocks, uncertainty_blocks):
+_MODULES = (
+    blocks,
+    study_blocks,
+    fast_tier_blocks,
+    linear_model_blocks,
+    performance_blocks,
+    real_gas_blocks,
+    uncertainty_blocks,
+)
+for _module in _MODULES:
     BLOCKS |= _module.BLOCKS
 
 
