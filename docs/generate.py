@@ -23,6 +23,7 @@ sys.path.insert(0, str(DOCS))
 import blocks  # noqa: E402  (beside this script)
 import fast_tier_blocks  # noqa: E402
 import flying_qualities_blocks  # noqa: E402
+import linear_model_blocks  # noqa: E402
 import performance_blocks  # noqa: E402
 import real_gas_blocks  # noqa: E402
 import study_blocks  # noqa: E402
@@ -36,6 +37,7 @@ _MODULES = (
     study_blocks,
     fast_tier_blocks,
     flying_qualities_blocks,
+    linear_model_blocks,
     performance_blocks,
     real_gas_blocks,
     uncertainty_blocks,

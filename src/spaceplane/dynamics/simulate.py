@@ -266,11 +266,17 @@ def _fly(
     before = flight.observed(time, values) if events else {}
     first: float | None = None
     solver = None
+    # A law that jumps at the bound still has its old value at the end of the stretch.
+    latest = np.nextafter(bound, 0.0)
+
+    def rates(at: float, coordinates: np.ndarray) -> np.ndarray:
+        return flight.rates(min(at, latest), coordinates)
+
     while time < bound:
         tried = first if first is not None else math.nan
         try:
             if solver is None:
-                solver = method(flight.rates, time, values, bound, first_step=first, **options)
+                solver = method(rates, time, values, bound, first_step=first, **options)
             tried = solver.h_abs
             message = solver.step()
             if solver.status == "failed":
@@ -313,7 +319,7 @@ def _met(
         # A quantity that starts on its value has met it before; one that ends on it meets it now.
         if not (low * high < 0 or (low != 0 and high == 0)) or event.direction * (high - low) < 0:
             continue
-        if event.quantity in ("chi", "lon", "sigma", "yaw", "roll", "alpha") and abs(high - low) > math.pi:
+        if event.quantity in ("chi", "lon", "sigma", "psi", "phi", "alpha") and abs(high - low) > math.pi:
             continue  # the jump from pi to -pi
 
         def miss(time: float, event: Event = event) -> float:
