@@ -237,7 +237,7 @@ def test_header_states_what_a_reader_needs(model):
         "beta -10 to 10 deg",
         "body_flap -20 to 30 deg",
         "rudder_left positive trailing edge outboard",
-        "CY_body_flap",
+        "CY_elevon_left",
         INSIDE,
     ):
         assert text in note, text

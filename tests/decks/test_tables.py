@@ -55,14 +55,14 @@ def test_model_csv_holds_every_value(tmp_path):
     }
     assert limits["mach"] == (1.5, 20.0, "1") and limits["body_flap"] == (-20.0, 30.0, "deg")
     text = (tmp_path / "README.txt").read_text()
-    assert model.source in text and "wind axes" in text and "13 m behind the nose" in text and "Cl_body_flap" in text
+    assert model.source in text and "wind axes" in text and "13 m behind the nose" in text and "CL_rudder_left" in text
 
 
 def test_unknown_surfaces_are_named_whole(tmp_path):
     write_model_csv(horus_2b_published(), tmp_path)
     line = (tmp_path / "README.txt").read_text().splitlines()[-1]
     assert line.startswith("unknown and counted as zero: CL_q, Cm_q, ")
-    assert line.endswith("Cn_body_flap, all of rudder_left, all of rudder_right") and "CL_rudder" not in line
+    assert line.endswith("Cn_elevon_right, all of rudder_left, all of rudder_right") and "CL_rudder" not in line
 
 
 def test_linear_csv_rebuilds_the_matrices(systems, tmp_path):

@@ -1,5 +1,7 @@
 """The analytic linear model equals the complex-step derivative of the nonlinear equations, term by term, to 1e-8."""
 
+from dataclasses import asdict
+
 import numpy as np
 import pytest
 
@@ -21,7 +23,7 @@ def model(rng, **changes):
         CD=rng.uniform(0.02, 1),
     )  # fmt: skip
     static = {
-        name: value * rng.uniform(-2, 2) for name, value in horus.derivatives().__dict__.items() if name != "controls"
+        name: value * rng.uniform(-2, 2) for name, value in asdict(horus.derivatives()).items() if name != "controls"
     }
     return flight_model(point, horus.MASS, horus.REFERENCE, horus.derivatives(**{**static, **changes}))
 
