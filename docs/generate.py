@@ -22,6 +22,7 @@ sys.path.insert(0, str(DOCS))
 
 import blocks  # noqa: E402  (beside this script)
 import fast_tier_blocks  # noqa: E402
+import modes_blocks  # noqa: E402
 import performance_blocks  # noqa: E402
 import real_gas_blocks  # noqa: E402
 import study_blocks  # noqa: E402
@@ -30,7 +31,15 @@ import uncertainty_blocks  # noqa: E402
 PAGES = [*sorted(DOCS.rglob("*.md")), DOCS.parent / "README.md"]
 PATTERN = re.compile(r"(<!-- generated: ([a-z0-9 -]+) -->\n).*?(<!-- end generated -->)", re.DOTALL)
 BLOCKS: dict[str, Callable[[], str]] = {}
-for _module in (blocks, study_blocks, fast_tier_blocks, performance_blocks, real_gas_blocks, uncertainty_blocks):
+for _module in (
+    blocks,
+    study_blocks,
+    fast_tier_blocks,
+    performance_blocks,
+    real_gas_blocks,
+    uncertainty_blocks,
+    modes_blocks,
+):
     BLOCKS |= _module.BLOCKS
 
 
