@@ -24,6 +24,7 @@ import blocks  # noqa: E402  (beside this script)
 import fast_tier_blocks  # noqa: E402
 import flying_qualities_blocks  # noqa: E402
 import linear_model_blocks  # noqa: E402
+import modes_blocks  # noqa: E402
 import performance_blocks  # noqa: E402
 import real_gas_blocks  # noqa: E402
 import study_blocks  # noqa: E402
@@ -43,6 +44,15 @@ _MODULES = (
     uncertainty_blocks,
 )
 for _module in _MODULES:
+for _module in (
+    blocks,
+    study_blocks,
+    fast_tier_blocks,
+    performance_blocks,
+    real_gas_blocks,
+    uncertainty_blocks,
+    modes_blocks,
+):
     BLOCKS |= _module.BLOCKS
 
 
