@@ -7,6 +7,7 @@ import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from spaceplane.dynamics.derivatives import (
     CONTROL_DERIVATIVES,
@@ -20,6 +21,9 @@ from spaceplane.dynamics.flightpoint import FlightPoint, flight_point
 from spaceplane.dynamics.linearise import FORMS
 from spaceplane.errors import InputError, unknown_name
 from spaceplane.vehicle.properties import MassProperties, ReferenceLengths
+
+if TYPE_CHECKING:
+    from spaceplane.aero.model.model import AeroModel
 
 UNITS = ("per_degree", "per_radian")
 FLIGHT_REQUIRED = ("mach", "altitude_m", "alpha_deg", "gamma_deg", "bank_deg", "CL", "CD")
@@ -119,6 +123,22 @@ def from_tables(content: Mapping[str, object]) -> ModesCase:
         **_uncertainty(content),
         airframe=_airframe(content),
     )
+
+
+def aero_model(case: ModesCase, name: str = "derivatives file") -> AeroModel:
+    """The aerodynamics of a case, linear about its flight point and trimmed there without deflections.
+
+    The file does not say where its moment centre is, so the model should not be moved to another.
+
+    Args:
+        case: as read.
+        name: of the model.
+    """
+    from spaceplane.aero.model.from_derivatives import linear_model  # the reader alone needs no aerodynamics
+
+    point = case.point
+    CL, CD = point.coefficients()
+    return linear_model(name, case.derivatives, case.reference, point.mach, point.alpha, CL, CD)
 
 
 def _derivatives(content: Mapping[str, object]) -> Derivatives:

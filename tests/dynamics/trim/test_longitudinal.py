@@ -204,3 +204,11 @@ def test_moment_slope_vanishes_about_the_neutral_point():
     assert found.margin == pytest.approx(arm) and (found.margin > 0) == (found.Cm_alpha < 0)
     stable = static_margin(linear.model(Cm=(0.0, -0.3, 0.0)), MACH, ALPHA)
     assert stable.margin > 0.0 and stable.neutral_point > 13.0
+
+
+@pytest.mark.parametrize(("elevator_deg", "forward"), [(-12.5, 0.230), (-17.5, 0.357)])
+def test_centre_that_the_literatures_elevons_need(elevator_deg, forward):
+    """The numbers of docs/trim.md."""
+    elevator = math.radians(elevator_deg)
+    deflections = {"elevon_left": elevator, "elevon_right": elevator, "body_flap": FLAP_UP}
+    assert center_shift(horus_2b_published(), *TAEM, deflections).aft == pytest.approx(-forward, abs=5e-4)
