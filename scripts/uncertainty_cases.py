@@ -144,4 +144,4 @@ BODIES: dict[str, Callable[[], Body]] = {
     M6: m6_body,
 }
 HELD_OUT = (WIDE, FINNER, FINNER_DEFAULT, HB2, M6)
-"""Bodies that nothing in the estimate was chosen by."""
+"""Bodies that neither the order nor the factors of safety were fitted with."""

@@ -9,9 +9,9 @@ With two meshes the order is assumed, not observed: 0.8, which is what HORUS-2B'
 wall cells of 0.5 to 0.08 m, with the shocks, edges and cut cells that a scheme of second order meets there. The factor
 of safety is 4 near and below the speed of sound, where shocks stand on the wall and two meshes that misplace them alike
 agree better with each other than with the exact flow, and at hypersonic Mach numbers, where few cells lie between wall
-and shock. Between, where errors fall faster, it is calibrated as Xing and Stern (J. Fluids Eng. 132, 2010) do: 2.5, the
-smallest that leaves nine in ten of HORUS-2B's longitudinal and lateral coefficients and derivatives held (Roache's own
-for two grids is 3; docs/uncertainty.md has how often either holds the error).
+and shock. Between, where errors fall faster, it is calibrated as Xing and Stern (J. Fluids Eng. 132, 2010) do: by 2.5,
+93 % or more of HORUS-2B's longitudinal and of its lateral coefficients and derivatives are held, by 2.25 only 91 %
+(Roache's own for two grids is 3; docs/uncertainty.md has what others hold, and on other bodies).
 
 One difference may be small by chance while the error is not, so e is not taken alone. It is at least the root mean
 square of the differences at neighbouring Mach numbers, of the same quantity and, with less weight, of those that share
