@@ -9,7 +9,6 @@ from spaceplane.aero.model import netcdf
 from spaceplane.aero.model.model import AeroModel
 from spaceplane.aero.model.published import horus_2b_published
 from spaceplane.aero.model.table_set import read_table_set
-from spaceplane.decks.about_point import model_about
 from spaceplane.dynamics import derivatives_file
 from spaceplane.errors import InputError, unknown_name
 from spaceplane.vehicle import presets
@@ -60,7 +59,7 @@ def read_source(source: str, vehicle: str | None = None) -> Source:
         if vehicle is not None:
             raise InputError(f"--vehicle: {source} has its own vehicle")
         case = derivatives_file.read(source)
-        return Source(model_about(case), case.mass)
+        return Source(derivatives_file.aero_model(case, Path(source).stem), case.mass)
     named = presets.load(vehicle) if vehicle else None
     if source == PUBLISHED:
         return Source(horus_2b_published(), (named or presets.horus_2b()).mass)
