@@ -299,6 +299,8 @@ def _components(mode: Mode, speed: float) -> dict[str, complex]:
 
 
 def _arrows(axes: Axes, mode: Mode, components: Mapping[str, complex]) -> None:
+    from matplotlib.patheffects import withStroke
+
     colours = dict(zip(mode.states, COLOURS, strict=False))
     drawn: list[tuple[float, float]] = []
     placed: list[complex] = []
@@ -318,7 +320,8 @@ def _arrows(axes: Axes, mode: Mode, components: Mapping[str, complex]) -> None:
         drawn.append((angle, size))
         placed.append(place)
         text = STATE_LABELS.get(state, state)
-        axes.text(np.angle(place), abs(place), text, color=colours[state], ha="center", va="center", fontsize=9)
+        label = axes.text(np.angle(place), abs(place), text, color=colours[state], ha="center", va="center", fontsize=9)
+        label.set(zorder=6, path_effects=[withStroke(linewidth=2.5, foreground="white")])
     axes.set_ylim(0.0, max([1.2, *(abs(place) + 0.1 for place in placed)]))
     axes.set_yticks([0.5, 1.0], ["", ""])
     axes.set_xticks(np.radians([0, 90, 180, 270]), ["", "", "", ""])
