@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
@@ -15,7 +15,7 @@ from spaceplane.dynamics.linearise import FORMS, linearise
 from spaceplane.dynamics.modes import Mode
 from spaceplane.dynamics.statespace import StateSpace
 from spaceplane.dynamics.tracking import Branches, follow, interpolated
-from spaceplane.dynamics.trim.longitudinal import PitchTrim, trim_elevator
+from spaceplane.dynamics.trim.longitudinal import PitchTrim, schedule_at, trim_elevator
 from spaceplane.dynamics.trim.maps import trim_map
 from spaceplane.errors import InputError
 from spaceplane.progress import Progress, silent
@@ -40,7 +40,8 @@ class DescentSettings:
     Attributes:
         machs: increasing Mach numbers; altitude (thesis Table 4.1) and angle of attack follow from each.
         gamma_deg, bank_deg: flight-path and bank angle, deg, at every Mach number.
-        body_flap: rad, everywhere; None chooses the one that leaves the elevator the largest margin.
+        body_flap: rad, everywhere; a schedule Mach number -> rad, linear in between; None, and where the schedule ends,
+            chooses the one that leaves the elevator the largest margin.
         form: of the linear model, see `dynamics.linearise.FORMS`.
         vehicle_class, category: of MIL-F-8785C.
 
@@ -51,7 +52,7 @@ class DescentSettings:
     machs: Sequence[float] = MACHS
     gamma_deg: float = TAEM_GAMMA_DEG
     bank_deg: float = TAEM_BANK_DEG
-    body_flap: float | None = None
+    body_flap: float | Mapping[float, float] | None = None
     form: str = FORMS[0]
     vehicle_class: str = "III"
     category: str = "B"
@@ -139,7 +140,9 @@ def descend(
 
 def _at(model: AeroModel, mass: MassProperties, point: FlightPoint, settings: DescentSettings) -> DescentPoint:
     """Trim, linear model, modes and verdicts at one flight point."""
-    trims = trim_elevator(model, point.mach, point.alpha, settings.body_flap)
+    flap = settings.body_flap
+    flap = schedule_at(flap, point.mach) if isinstance(flap, Mapping) else flap
+    trims = trim_elevator(model, point.mach, point.alpha, flap)
     trim = trims.best
     if trim is None:
         return DescentPoint(point, reason=trims.reason)

@@ -31,7 +31,11 @@ def fly(
     bank: Annotated[str | None, typer.Option("--bank", metavar="DEG", help="Bank angle; 55 by default.")] = None,
     body_flap: Annotated[
         str | None,
-        typer.Option("--body-flap", metavar="DEG", help="Held everywhere; by default the elevator's largest margin."),
+        typer.Option(
+            "--body-flap",
+            metavar="DEG",
+            help="Held everywhere; else a schedule, or the elevator's largest margin.",
+        ),
     ] = None,
     form: Annotated[
         str, typer.Option("--form", metavar="rigid-body|thesis", help="Form of the linear model.")
@@ -57,8 +61,11 @@ def fly(
     given |= {} if body_flap is None else {"body_flap": math.radians(number("--body-flap", body_flap, "deg"))}
     writable_file(json_file, "--json")
     from spaceplane.analysis.descent import DescentSettings, descend
-    from spaceplane.decks.source import read_source
+    from spaceplane.decks.source import PUBLISHED, read_source
+    from spaceplane.dynamics.trim.longitudinal import HORUS_2B_BODY_FLAP
 
+    if source == PUBLISHED:
+        given.setdefault("body_flap", HORUS_2B_BODY_FLAP)
     settings = DescentSettings(**given)
     found = read_source(source, vehicle)
     if found.mass is None:

@@ -196,19 +196,26 @@ def _levels(descent: Descent) -> Table:
     machs = tuple(f"Mach {one.point.mach:g}" for one in descent.points)
     keys = dict.fromkeys((v.criterion, v.paragraph) for one in descent.points for v in one.verdicts if v.applicable)
     rows = [
-        (f"{criterion} ({paragraph})", *(_worst(one.verdicts, criterion, paragraph) for one in descent.points))
-        for criterion, paragraph in sorted(keys, key=lambda key: (key[1] not in LEVELS, key[1]))
+        (_title(*key), *(_worst(one.verdicts, *key) for one in descent.points))
+        for key in sorted(keys, key=lambda key: (key[1] not in LEVELS, key[1]))
     ]
     note = "The worst level of each criterion; - where it does not apply, for the reasons in descent.json."
     return Table("Levels of MIL-F-8785C and departure criteria", 2, note, ("criterion", *machs), tuple(rows))
 
 
+def _title(criterion: str, paragraph: str) -> str:
+    """A criterion with its paragraph of the specification; sources of others are in descent.json."""
+    return f"{criterion} ({paragraph})" if paragraph[:1].isdigit() else criterion
+
+
 def _worst(verdicts: tuple[Verdict, ...], criterion: str, paragraph: str) -> str:
-    levels = [v.level for v in verdicts if (v.criterion, v.paragraph) == (criterion, paragraph) and v.applicable]
-    known = [level for level in levels if level is not None]
-    if not known:
-        return "-"
-    return level_text(max(known, key=lambda level: 4 if isinstance(level, str) else level))
+    """The worst level; of requirements without levels whether they are met."""
+    here = [v for v in verdicts if (v.criterion, v.paragraph) == (criterion, paragraph) and v.applicable]
+    levels = [v.level for v in here if v.level is not None]
+    if levels:
+        return level_text(max(levels, key=lambda level: 4 if isinstance(level, str) else level))
+    told_met = [v.met for v in here if v.met is not None]
+    return ("met" if all(told_met) else "not met") if told_met else "-"
 
 
 def _eigenvalue(mode: Mode) -> str:

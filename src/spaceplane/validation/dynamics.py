@@ -1,6 +1,8 @@
-"""Validation case: eigenmodes of the Boeing 747 and of HORUS-2B at the TAEM interface against published ones."""
+"""Validation case: published eigenmodes of the Boeing 747, the Navion, the DC-8 and HORUS-2B at the TAEM interface."""
 
 from __future__ import annotations
+
+from dataclasses import replace
 
 import numpy as np
 
@@ -19,6 +21,8 @@ from spaceplane.vehicle.properties import MassProperties, ReferenceLengths
 CASE = "dynamics"
 HEFFLEY = "Franklin, Powell and Emami-Naeini, Feedback Control of Dynamic Systems, after Heffley and Jewell (1972)"
 ETKIN = "Etkin and Reid, Dynamics of Flight, 3rd ed. (1996), chapter 6"
+NELSON = "Nelson, Flight Stability and Automatic Control, 2nd ed. (1998), Appendix B and chapters 4 and 5"
+COOK = "Cook, Flight Dynamics Principles, 3rd ed. (2013), example 7.1, after Teper (1969)"
 MOOIJ = "Mooij (2015), as quoted in Table 6.2 of Reijne (2022)"
 REIJNE = "Reijne (2022), Table 6.3"
 
@@ -32,6 +36,18 @@ LATERAL_747 = np.array(
     ]
 )
 
+# States v (ft/s), p, r, phi.
+LATERAL_DC8 = np.array(
+    [
+        [-0.1008, 0.0, -468.2, 32.2],
+        [-0.00579, -1.232, 0.397, 0.0],
+        [0.00278, -0.0346, -0.257, 0.0],
+        [0.0, 1.0, 0.0, 0.0],
+    ]
+)
+FOOT, POUND, SLUG = 0.3048, 0.45359237, 14.593903
+"""m, kg and kg."""
+
 
 def run(fine: bool, progress: Progress) -> list[Record]:
     """Every mode that has a published value; takes no time, fine or not.
@@ -42,6 +58,8 @@ def run(fine: bool, progress: Progress) -> list[Record]:
     """
     progress("Boeing 747", 0.0)
     records = [*lateral_747(), *longitudinal_747()]
+    progress("Navion, DC-8", 0.25)
+    records += [*navion(), *lateral_dc8()]
     progress("HORUS-2B", 0.5)
     return [*records, *horus()]
 
@@ -92,6 +110,54 @@ def longitudinal_747_system() -> StateSpace:
     )  # fmt: skip
     lengths = ReferenceLengths(area, 8.324, 59.64, (0.0, 0.0, 0.0))
     return linearise(point, mass, lengths, derivatives, density_gradient=False)
+
+
+def navion() -> list[Record]:
+    """Modes of the nine-state model of a light aircraft at sea level from its published derivatives."""
+    modes = {mode.kind: mode for mode in identify(navion_system())}
+    where = "Navion"
+    note = "C_L_q left out, as by the source; uniform air"
+    spiral = "the source's printed numbers give -0.0082 (derivatives) to -0.0089 (matrix): two digits are not theirs"
+    return [
+        *_pair("short period", where, -2.51 + 2.59j, modes["short_period"], 0.01, NELSON, note),
+        *_pair("phugoid", where, -0.0171 + 0.213j, modes["phugoid"], 0.01, NELSON, note),
+        *_pair("Dutch roll", where, -0.487 + 2.335j, modes["dutch_roll"], 0.01, NELSON, note),
+        _record("roll mode", where, "1/s", -8.435, modes["roll"].eigenvalue.real, 0.01, NELSON, note),
+        replace(
+            _record("spiral", where, "1/s", -0.00877, modes["spiral"].eigenvalue.real, 0.01, NELSON, spiral), gate=False
+        ),
+    ]
+
+
+def navion_system() -> StateSpace:
+    """The nine-state model of the Navion at Mach 0.158 in level flight; the source's units turned into SI."""
+    mach, speed, density = 0.158, 176.0 * FOOT, 0.002378 * SLUG / FOOT**3
+    temperature = (speed / mach) ** 2 / (RATIO_OF_SPECIFIC_HEATS * GAS_CONSTANT_AIR)
+    pressure = density * GAS_CONSTANT_AIR * temperature
+    point = flight_point(mach, 0.0, 0.0, 0.0, 0.0, 0.41, 0.05, pressure, temperature)
+    mass = MassProperties(2750.0 * POUND, *(moment * SLUG * FOOT**2 for moment in (1048.0, 3000.0, 3530.0)))
+    derivatives = from_mapping(
+        {
+            "CD_alpha": 0.33, "CL_alpha": 4.44, "Cm_alpha": -0.683,
+            "CY_beta": -0.564, "Cl_beta": -0.074, "Cn_beta": 0.071,
+            "CD_M": 0.0, "CL_M": 0.0, "Cm_M": 0.0, "Cm_q": -9.96, "Cm_alphadot": -4.36,
+            "Cl_p": -0.410, "Cn_p": -0.0575, "Cl_r": 0.107, "Cn_r": -0.125,
+        }
+    )  # fmt: skip
+    lengths = ReferenceLengths(184.0 * FOOT**2, 5.7 * FOOT, 33.4 * FOOT, (0.0, 0.0, 0.0))
+    return linearise(point, mass, lengths, derivatives, density_gradient=False)
+
+
+def lateral_dc8() -> list[Record]:
+    """Lateral modes of a 4 x 4 matrix in ft/s and rad."""
+    modes = {mode.kind: mode for mode in identify(from_matrix(LATERAL_DC8, ("v", "p", "r", "phi")))}
+    where = "Douglas DC-8 lateral"
+    pair = complex(-0.127, (1.433 - 0.127**2) ** 0.5)  # s^2 + 0.254 s + 1.433
+    return [
+        *_pair("Dutch roll", where, pair, modes["dutch_roll"], 0.01, COOK),
+        _record("roll mode", where, "1/s", -1.329, modes["roll"].eigenvalue.real, 0.01, COOK),
+        _record("spiral", where, "1/s", -0.0065, modes["spiral"].eigenvalue.real, 0.01, COOK),
+    ]
 
 
 def horus() -> list[Record]:

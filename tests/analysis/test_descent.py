@@ -1,0 +1,114 @@
+"""A descent flown on the published tables of HORUS-2B."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from spaceplane.aero.model.published import horus_2b_published
+from spaceplane.analysis.descent import DescentSettings, descend
+from spaceplane.dynamics.trim.longitudinal import HORUS_2B_BODY_FLAP
+from spaceplane.errors import InputError
+from spaceplane.report import descent as report
+from spaceplane.vehicle.presets import horus_2b
+
+MASS = horus_2b().mass
+
+
+@pytest.fixture(scope="module")
+def descent():
+    return descend(horus_2b_published(), MASS, DescentSettings((1.5, 2.0, 2.5, 10.0), body_flap=HORUS_2B_BODY_FLAP))
+
+
+def test_the_trim_at_the_taem_interface(descent):
+    """Body flap -20 deg: elevons near -3 deg about the published reference, and the tables' own coefficients."""
+    trim = descent.points[2].trim
+    assert math.degrees(trim.body_flap) == pytest.approx(-20.0)
+    assert math.degrees(trim.elevator) == pytest.approx(-2.8, abs=0.1)
+    deflections = {"elevon_left": trim.elevator, "elevon_right": trim.elevator, "body_flap": trim.body_flap}
+    found = horus_2b_published().coefficients(2.5, math.radians(16.6), deflections=deflections)
+    assert found["Cm"] == pytest.approx(0.0, abs=1e-12)
+    assert (found["CL"], found["CD"]) == pytest.approx((trim.CL, trim.CD))
+
+
+def test_modes_follow_from_the_sign_of_the_pitch_stiffness(descent):
+    """Stable in pitch at Mach 1.5 and 10, where a short period is; a divergence between, as the literature has it."""
+    for one in descent.points:
+        kinds = {mode.kind for mode in one.modes}
+        stiff = one.trim.static.Cm_alpha < 0.0
+        assert ("short_period" in kinds) == stiff
+        assert (
+            any(m.group == "longitudinal" and not m.oscillatory and m.eigenvalue.real > 0.2 for m in one.modes) != stiff
+        )
+    divergence = max(mode.eigenvalue.real for mode in descent.points[2].modes)
+    assert divergence == pytest.approx(0.9518, rel=0.07)  # thesis Table 6.2, with other lift and drag
+
+
+def test_branches_pass_from_one_to_the_other_by_events(descent):
+    kinds = [event.kind for event in descent.branches.events]
+    assert "split" in kinds and "merge" in kinds
+    assert descent.branches.dataset["mach"].values[[0, -1]].tolist() == [1.5, 10.0]
+
+
+def test_nothing_is_extrapolated():
+    found = descend(horus_2b_published(), MASS, DescentSettings((1.2, 2.0)))
+    outside, inside = found.points
+    assert outside.trim is None and "mach" in outside.reason and not outside.modes
+    assert inside.trim is not None and found.branches is None
+
+
+def test_the_map_holds_the_flown_trims(descent):
+    here = descent.trim_map.sel(mach=2.5).interp(alpha=math.radians(16.6))
+    assert float(here.elevator) == pytest.approx(descent.points[2].trim.elevator, abs=math.radians(0.2))
+    assert bool(descent.trim_map.trimmable.sel(mach=2.5).all())
+
+
+def test_a_flap_held_elsewhere_moves_the_elevator_the_other_way():
+    held = [
+        descend(horus_2b_published(), MASS, DescentSettings((2.5,), body_flap=math.radians(flap)))
+        .points[0]
+        .trim.elevator
+        for flap in (-20.0, 0.0, 20.0)
+    ]
+    assert held[0] > held[1] > held[2]
+
+
+def test_the_page_and_the_record_are_written_whole(descent, tmp_path):
+    paths = report.write(descent, tmp_path)
+    record = json.loads(paths["json"].read_text())
+    assert [point["mach"] for point in record["points"]] == [1.5, 2.0, 2.5, 10.0]
+    page = paths["html"].read_text()
+    for text in ("Trim", "Modes", "Events along the descent", "Levels of MIL-F-8785C", "data:image/png"):
+        assert text in page
+    assert ">nan<" not in page
+    for name in ("trim-map", "root-locus", "modes-by-mach", "eigenvectors"):
+        assert paths[name].read_bytes()[:4] == b"\x89PNG"
+
+
+@pytest.mark.parametrize(
+    ("wrong", "message"),
+    [
+        ({"machs": (2.0, 2.0)}, "mach"),
+        ({"form": "other"}, "form"),
+        ({"category": "D"}, "category"),
+        ({"machs": (30.0,)}, "mach"),
+    ],
+)
+def test_what_is_wrong_is_named(wrong, message):
+    with pytest.raises(InputError, match=message):
+        descend(horus_2b_published(), MASS, replace(DescentSettings((2.0,)), **wrong))
+
+
+def test_bank_couples_and_level_flight_does_not():
+    groups = []
+    for bank in (0.0, 55.0):
+        point = descend(horus_2b_published(), MASS, DescentSettings((10.0,), bank_deg=bank)).points[0]
+        states = point.system.states
+        rows = [states.index(name) for name in ("V", "gamma", "R", "q", "alpha")]
+        columns = [states.index(name) for name in ("p", "r", "beta", "sigma")]
+        groups.append(np.abs(point.system.A[np.ix_(rows, columns)]).max())
+    assert groups[0] < 1e-12 < groups[1]
