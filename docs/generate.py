@@ -39,20 +39,12 @@ _MODULES = (
     fast_tier_blocks,
     flying_qualities_blocks,
     linear_model_blocks,
+    modes_blocks,
     performance_blocks,
     real_gas_blocks,
     uncertainty_blocks,
 )
 for _module in _MODULES:
-for _module in (
-    blocks,
-    study_blocks,
-    fast_tier_blocks,
-    performance_blocks,
-    real_gas_blocks,
-    uncertainty_blocks,
-    modes_blocks,
-):
     BLOCKS |= _module.BLOCKS
 
 

