@@ -19,7 +19,7 @@ DRAWS = 500
 @lru_cache(maxsize=1)
 def points() -> tuple[tuple, ...]:
     """(name, airframe, uncertainty) of the demo's flight points, from its stored derivatives and their errors."""
-    from spaceplane.dynamics.derivatives import from_mapping
+    from spaceplane.aero.model.derivatives import from_mapping
     from spaceplane.dynamics.flightpoint import taem_point
     from spaceplane.qualities.airframe import Airframe
     from spaceplane.qualities.probability import Uncertainty, mirror_correlation

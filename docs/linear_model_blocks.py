@@ -9,7 +9,7 @@ import numpy as np
 from blocks import demo, table
 from scipy.optimize import linear_sum_assignment
 
-from spaceplane.dynamics.derivatives import COEFFICIENTS, COMBINED, DAMPING, Derivatives, from_mapping, per_radian
+from spaceplane.aero.model.derivatives import COEFFICIENTS, COMBINED, DAMPING, Derivatives, from_mapping, per_radian
 from spaceplane.dynamics.flightpoint import FlightPoint, flight_point
 from spaceplane.dynamics.linearise import linearise
 from spaceplane.dynamics.modes import identify

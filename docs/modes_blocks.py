@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
+from spaceplane.aero.model.derivatives import Derivatives
 from spaceplane.control.authority import Authority, authority
 from spaceplane.control.closed_loop import close
 from spaceplane.control.disturbance import Gust, disturbed, gust_column
@@ -24,7 +25,6 @@ from spaceplane.control.measures import controllable_rank, modal_control
 from spaceplane.control.regulator import Regulator, bryson, minimum_effort
 from spaceplane.control.saturation import saturated, takeover
 from spaceplane.dynamics import derivatives_file
-from spaceplane.dynamics.derivatives import Derivatives
 from spaceplane.dynamics.linearise import linearise
 from spaceplane.dynamics.modes import identify
 from spaceplane.dynamics.response import doublet

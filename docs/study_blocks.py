@@ -413,7 +413,7 @@ def comparison_aft() -> str:
 
 def _about(point: dict, side: int, aft: float) -> tuple[str, str, str]:
     """`Cm_alpha`, `Cn_beta` and the fastest growing mode of one shape about a centre moved aft, m."""
-    from spaceplane.dynamics.derivatives import STATIC, Derivatives
+    from spaceplane.aero.model.derivatives import STATIC, Derivatives
     from spaceplane.dynamics.flightpoint import taem_point
     from spaceplane.dynamics.linearise import linearise
     from spaceplane.dynamics.modes import identify

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from spaceplane.dynamics.derivatives import Derivatives, from_mapping, per_radian
+from spaceplane.aero.model.derivatives import Derivatives, from_mapping, per_radian
 from spaceplane.dynamics.flightpoint import FlightPoint, flight_point
 from spaceplane.vehicle.properties import MassProperties, ReferenceLengths
 

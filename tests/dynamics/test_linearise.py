@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from spaceplane.aero.model.derivatives import DAMPING, STATIC
 from spaceplane.dynamics import derivatives_file
-from spaceplane.dynamics.derivatives import DAMPING, STATIC
 from spaceplane.dynamics.equations import air_gradient, flight_model, state_rates
 from spaceplane.dynamics.flightpoint import flight_point
 from spaceplane.dynamics.linearise import analytic, linearise, numerical

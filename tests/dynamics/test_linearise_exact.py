@@ -5,7 +5,7 @@ from dataclasses import asdict
 import numpy as np
 import pytest
 
-from spaceplane.dynamics.derivatives import COEFFICIENTS, CONTROLS, DAMPING
+from spaceplane.aero.model.derivatives import COEFFICIENTS, CONTROLS, DAMPING
 from spaceplane.dynamics.equations import flight_model, state_rates
 from spaceplane.dynamics.linearise import analytic, numerical
 from spaceplane.dynamics.statespace import MOMENT_INPUTS

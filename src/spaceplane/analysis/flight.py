@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from spaceplane.aero.integrate import TOTAL
+from spaceplane.aero.model.derivatives import COEFFICIENTS, DAMPING, STATIC, Derivatives
 from spaceplane.analysis.settings import AnalyseSettings
-from spaceplane.dynamics.derivatives import COEFFICIENTS, DAMPING, STATIC, Derivatives
 from spaceplane.dynamics.flightpoint import AngularRates, FlightPoint, equilibrium_rates
 from spaceplane.dynamics.linearise import linearise
 from spaceplane.dynamics.modes import Mode, identify

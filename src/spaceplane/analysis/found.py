@@ -9,10 +9,10 @@ from spaceplane.aero.bodies import ControlRun, SolvedBody
 from spaceplane.aero.conditions import ConditionPlan
 from spaceplane.aero.database import AeroDatabase
 from spaceplane.aero.derivatives import CONVERGED
+from spaceplane.aero.model.derivatives import DAMPING, STATIC
 from spaceplane.analysis.aerodynamics import Aerodynamics
 from spaceplane.analysis.flight import PointAnalysis
 from spaceplane.analysis.settings import AnalyseSettings
-from spaceplane.dynamics.derivatives import DAMPING, STATIC
 from spaceplane.vehicle.presets import Vehicle
 
 if TYPE_CHECKING:

@@ -13,8 +13,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from spaceplane.dynamics.derivatives import CONTROLS as AERODYNAMIC
-from spaceplane.dynamics.derivatives import PAIRS
+from spaceplane.aero.model.derivatives import CONTROLS as AERODYNAMIC
+from spaceplane.aero.model.derivatives import PAIRS
 from spaceplane.dynamics.statespace import MOMENT_INPUTS, StateSpace
 from spaceplane.errors import InputError, unknown_name
 from spaceplane.vehicle.controls import CONTROL_LIMITS_DEG

@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from spaceplane.aero.model.derivatives import Derivatives
 from spaceplane.control.regulator import Regulator
-from spaceplane.dynamics.derivatives import Derivatives
 from spaceplane.dynamics.flightpoint import FlightPoint
 from spaceplane.dynamics.linearise import linearise
 from spaceplane.dynamics.response import Propagator, checked_state, checked_times, unit_of

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from spaceplane.dynamics.derivatives import Derivatives
+from spaceplane.aero.model.derivatives import Derivatives
 from spaceplane.dynamics.flightpoint import FlightPoint, equilibrium_rates
 from spaceplane.dynamics.statespace import MOMENT_INPUTS, STATES, StateSpace
 from spaceplane.vehicle.properties import MassProperties, ReferenceLengths

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from spaceplane.dynamics.derivatives import (
+from spaceplane.aero.model.derivatives import (
     CONTROL_DERIVATIVES,
     DAMPING,
     STATIC,

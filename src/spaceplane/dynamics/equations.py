@@ -32,7 +32,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from spaceplane.dynamics.derivatives import COEFFICIENTS, Derivatives
+from spaceplane.aero.model.derivatives import COEFFICIENTS, Derivatives
 from spaceplane.dynamics.flightpoint import AngularRates, FlightPoint, equilibrium_rates
 from spaceplane.dynamics.statespace import MOMENT_INPUTS
 from spaceplane.environment import constants as c

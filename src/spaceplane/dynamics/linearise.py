@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from spaceplane.aero.model.derivatives import COEFFICIENTS, Derivatives
 from spaceplane.dynamics import appendix_a
-from spaceplane.dynamics.derivatives import COEFFICIENTS, Derivatives
 from spaceplane.dynamics.equations import FlightModel, flight_model, state_rates
 from spaceplane.dynamics.flightpoint import FlightPoint
 from spaceplane.dynamics.statespace import STATES, StateSpace

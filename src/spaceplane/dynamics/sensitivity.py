@@ -14,7 +14,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 from scipy.linalg import eig
 
-from spaceplane.dynamics.derivatives import DAMPING, STATIC, Derivatives
+from spaceplane.aero.model.derivatives import DAMPING, STATIC, Derivatives
 from spaceplane.dynamics.equations import flight_model
 from spaceplane.dynamics.flightpoint import FlightPoint
 from spaceplane.dynamics.linearise import analytic, linearise

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from spaceplane.dynamics.derivatives import Derivatives
+from spaceplane.aero.model.derivatives import Derivatives
 from spaceplane.dynamics.flightpoint import FlightPoint
 from spaceplane.errors import InputError, unknown_name
 from spaceplane.vehicle.controls import CONTROL_LIMITS_DEG, CONTROLS

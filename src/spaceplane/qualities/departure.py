@@ -15,7 +15,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from spaceplane.dynamics.derivatives import Derivatives
+from spaceplane.aero.model.derivatives import Derivatives
 from spaceplane.errors import InputError
 from spaceplane.qualities import limits
 from spaceplane.qualities.airframe import Airframe

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from spaceplane.dynamics.derivatives import Derivatives
+from spaceplane.aero.model.derivatives import Derivatives
 from spaceplane.dynamics.flightpoint import FlightPoint
 from spaceplane.environment.constants import STANDARD_GRAVITY
 from spaceplane.vehicle.properties import MassProperties, ReferenceLengths

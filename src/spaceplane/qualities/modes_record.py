@@ -16,7 +16,7 @@ from dataclasses import fields
 import numpy as np
 
 from spaceplane import __version__
-from spaceplane.dynamics.derivatives import Derivatives
+from spaceplane.aero.model.derivatives import Derivatives
 from spaceplane.dynamics.derivatives_file import ModesCase
 from spaceplane.dynamics.flightpoint import equilibrium_rates
 from spaceplane.dynamics.linearise import linearise

@@ -19,7 +19,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from spaceplane.dynamics.derivatives import COEFFICIENTS, PAIRS, Derivatives
+from spaceplane.aero.model.derivatives import COEFFICIENTS, PAIRS, Derivatives
 from spaceplane.dynamics.linearise import FORMS, linearise
 from spaceplane.dynamics.modes import Mode, identify
 from spaceplane.dynamics.sensitivity import PARAMETERS, eigenvalue_slopes, matrix_slopes, moved_by

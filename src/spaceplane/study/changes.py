@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass, replace
 
-from spaceplane.dynamics.derivatives import DAMPING, is_per_angle
+from spaceplane.aero.model.derivatives import DAMPING, is_per_angle
 from spaceplane.study.matching import match_modes
 from spaceplane.study.thesis import DERIVATIVES
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from spaceplane.dynamics.derivatives import from_mapping
+from spaceplane.aero.model.derivatives import from_mapping
 from spaceplane.dynamics.flightpoint import flight_point
 from spaceplane.dynamics.linearise import linearise
 from spaceplane.dynamics.modes import Mode, identify

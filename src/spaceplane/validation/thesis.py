@@ -14,7 +14,7 @@ from importlib.resources import files
 
 import numpy as np
 
-from spaceplane.dynamics.derivatives import from_mapping, per_degree, per_radian
+from spaceplane.aero.model.derivatives import from_mapping, per_degree, per_radian
 from spaceplane.dynamics.flightpoint import FlightPoint, flight_point, trajectory_altitude
 from spaceplane.dynamics.linearise import linearise
 from spaceplane.dynamics.modes import Mode, identify

@@ -9,10 +9,10 @@ import xarray as xr
 from tests.aero.model import linear
 
 from spaceplane.aero.model import netcdf
+from spaceplane.aero.model.derivatives import per_degree
 from spaceplane.aero.model.model import OutsideTables
 from spaceplane.aero.model.published import FOLDER, horus_2b_published
 from spaceplane.aero.model.table_set import read_table_set
-from spaceplane.dynamics.derivatives import per_degree
 from spaceplane.errors import InputError
 
 # Thesis Table 6.1, per degree and per unit Mach, Mach 2.5, alpha 16.6 deg.

@@ -14,8 +14,8 @@ import numpy as np
 
 from spaceplane.aero.axes import FORCES_AND_MOMENTS
 from spaceplane.aero.integrate import LATERAL
+from spaceplane.aero.model.derivatives import PAIRS
 from spaceplane.aero.model.model import AeroModel
-from spaceplane.dynamics.derivatives import PAIRS
 from spaceplane.dynamics.trim.effects import Effects, Limits, SurfaceEffect, effects
 from spaceplane.dynamics.trim.program import SIDESLIP, Task, solve
 from spaceplane.errors import InputError, unknown_name
