@@ -75,12 +75,17 @@ def criterion_name(criterion: str) -> str:
 
 
 def worst_levels(verdicts: list[dict]) -> dict[str, dict]:
-    """For each criterion its worst applicable verdict; the first one where none applies."""
+    """For each criterion its worst applicable verdict, of equal ones that over all; the first where none applies."""
     rank = {1: 1, 2: 2, 3: 3, "below 3": 4}
+
+    def badness(v: dict) -> tuple[int, bool]:
+        """To sort by."""
+        return rank.get(level_of(v), 0), v.get("quantity") == "overall"
+
     worst: dict[str, dict] = {}
     for v in verdicts:
         name = criterion_name(v.get("criterion") or v["mode"])
-        if name not in worst or rank.get(level_of(v), 0) > rank.get(level_of(worst[name]), 0):
+        if name not in worst or badness(v) > badness(worst[name]):
             worst[name] = v
     return worst
 
@@ -94,7 +99,7 @@ def _level_chips(verdicts: list[dict]) -> list[dict]:
     chips = []
     for name, v in worst_levels(verdicts).items():
         level = level_of(v)
-        text = f"{name}: {'n/a' if level is None else level_text(level)}"
+        text = f"{name}: {'n/a' if level is None else level_text(level)}{likelihood.certainty(v)}"
         title = v.get("note") or f"{v['mode']}: {v.get('quantity') or v.get('criterion') or ''}"
         chips.append({"css": level_css(level), "text": text, "title": title})
     return chips

@@ -51,6 +51,13 @@ def chance_text(verdict: dict) -> str:
     return f"{head} ± {fixed(100 * error, 0)}{percent}{rest}" if is_number(error) and error >= 0.005 else text
 
 
+def certainty(verdict: dict) -> str:
+    """Such as ` (87 %)` for the level that is stated; empty where it is all but certain, unknown or not applicable."""
+    level = verdict.get("level") if verdict.get("applicable", True) else None
+    share = (verdict.get("probabilities") or {}).get(str(level))
+    return f" ({fixed(100 * share, 0)} %)" if level is not None and share is not None and share < 0.995 else ""
+
+
 def eigenvalue_error(mode: dict) -> str:
     """Errors of real and imaginary part; empty without."""
     error = mode.get("eigenvalue_error")
