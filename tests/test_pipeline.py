@@ -163,6 +163,8 @@ def test_without_the_companion_mesh_errors_are_those_of_iteration_and_step(monke
     assert result["uncertainty"] == {"sources": ["iteration"]}
     (point,) = result["flight_points"]
     assert set(point["coefficient_errors_by_source"]) == {"iteration"}
+    # errors of iteration and step alone would call levels certain that are not
+    assert not any(verdict["probabilities"] for verdict in (*point["verdicts"], *point["airframe_verdicts"]))
     assert set(point["coefficient_errors"].values()) == {0.0}
     both = analysis.derivatives.isel(point=1)
     for name in ("CL_alpha", "Cn_beta"):

@@ -11,7 +11,7 @@ import numpy as np
 
 from spaceplane.aero.model.model import AeroModel, OutsideTables
 from spaceplane.dynamics.flightpoint import TAEM_BANK_DEG, TAEM_GAMMA_DEG, FlightPoint, taem_point
-from spaceplane.dynamics.linearise import FORMS, linearise
+from spaceplane.dynamics.linearise import FORMS
 from spaceplane.dynamics.modes import Mode
 from spaceplane.dynamics.statespace import StateSpace
 from spaceplane.dynamics.tracking import Branches, follow, interpolated
@@ -154,10 +154,9 @@ def _at(model: AeroModel, mass: MassProperties, point: FlightPoint, settings: De
         derivatives = model.derivatives(point.mach, point.alpha, deflections)
     except OutsideTables as error:
         return DescentPoint(point, trim, reason=f"outside the tables: {error}")
-    system = linearise(point, mass, model.reference, derivatives, settings.form)
     airframe = Airframe(point, mass, model.reference, derivatives, 0.0, trim.elevator)
     assessed = assess_all(airframe, settings.vehicle_class, settings.category, settings.form)
-    return DescentPoint(point, trim, system, assessed.modes, assessed.verdicts)
+    return DescentPoint(point, trim, assessed.system, assessed.modes, assessed.verdicts)
 
 
 def _followed(points: Sequence[DescentPoint]) -> Branches | None:

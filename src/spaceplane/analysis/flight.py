@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from spaceplane.aero.integrate import TOTAL
 from spaceplane.aero.model.derivatives import COEFFICIENTS, DAMPING, STATIC, Derivatives
+from spaceplane.aero.uncertainty.settings import MESH
 from spaceplane.analysis.settings import AnalyseSettings
 from spaceplane.dynamics.flightpoint import AngularRates, FlightPoint, equilibrium_rates
 from spaceplane.dynamics.linearise import linearise
@@ -107,7 +108,9 @@ def fly(
     verdicts = assess(modes, settings.vehicle_class, settings.category, n_alpha)
     model = (point, vehicle.mass, vehicle.reference, all_known)
     airframe = Airframe(*model, *_trim(base, index, settings))
-    uncertainty = _uncertainty(base, derivatives, index, all_known)
+    # Errors of iteration and step alone would make levels look far more certain than they are.
+    stated = settings.uncertainty == MESH
+    uncertainty = _uncertainty(base, derivatives, index, all_known) if stated else None
     judged = (settings.vehicle_class, settings.category)
     return PointAnalysis(
         point,
@@ -131,12 +134,20 @@ def _trim(base: xr.Dataset, index: int, settings: AnalyseSettings) -> tuple[floa
 
 
 def _uncertainty(base: xr.Dataset, derivatives: xr.Dataset, index: int, known: Derivatives) -> Uncertainty | None:
-    """Stated errors of the derivatives, C_L and C_D as half widths of 95 % intervals; None where none is above 0."""
+    """Stated errors of the derivatives, C_L and C_D as half widths of 95 % intervals.
+
+    None where none is above 0, or where that of a value is missing, which is not to pass for certain.
+    """
     half_width = {}
     for name in (*PARAMETERS, *known.controls):
-        source, label = (base, f"{name}_error") if name in AT_POINT else (derivatives, f"{name}_error")
-        if label in source and (name in AT_POINT or name in source):
-            error = float(source[label][index])
-            if math.isfinite(error) and error > 0:
-                half_width[name] = error
+        source, label = (base if name in AT_POINT else derivatives), f"{name}_error"
+        if name not in source or label not in source:
+            continue
+        if not math.isfinite(float(source[name].sel(part=TOTAL)[index])):
+            continue  # it is not in the linear model
+        error = float(source[label][index])
+        if not math.isfinite(error):
+            return None
+        if error > 0.0:
+            half_width[name] = error
     return Uncertainty(half_width, mirror_correlation(known, half_width)) if half_width else None

@@ -23,6 +23,7 @@ from spaceplane.aero.model.derivatives import COEFFICIENTS, PAIRS, Derivatives
 from spaceplane.dynamics.linearise import FORMS, linearise
 from spaceplane.dynamics.modes import Mode, identify
 from spaceplane.dynamics.sensitivity import PARAMETERS, eigenvalue_slopes, matrix_slopes, moved_by
+from spaceplane.dynamics.statespace import StateSpace
 from spaceplane.environment.constants import STANDARD_GRAVITY
 from spaceplane.errors import InputError, unknown_name
 from spaceplane.qualities import limits
@@ -147,8 +148,9 @@ class Outlook:
 
 @dataclass(frozen=True)
 class Assessed:
-    """Modes and verdicts of one set of derivatives."""
+    """Linear model, modes and verdicts of one set of derivatives; no model where only its modes were moved."""
 
+    system: StateSpace | None
     modes: tuple[Mode, ...]
     verdicts: tuple[Verdict, ...]
 
@@ -180,7 +182,7 @@ def assess_all(
     verdicts = assess(modes, vehicle_class, category, _n_alpha(a))
     if with_airframe:
         verdicts += assess_airframe(a, vehicle_class, category, system)
-    return Assessed(modes, verdicts)
+    return Assessed(system, modes, verdicts)
 
 
 def outlooks(
@@ -306,13 +308,13 @@ def _first_order(
     """A judge that moves the nominal eigenvalues along their derivatives; criteria on the airframe are asked anew."""
     a, names = airframe, uncertainty.names
     model = (a.point, a.mass, a.reference, a.derivatives)
-    A = linearise(*model, form, density_gradient, gyroscopic).A
     known = [name for name in names if name in PARAMETERS]
     slopes = matrix_slopes(*model, known, form, density_gradient, gyroscopic)
     columns = [names.index(name) for name in known]
-    by_mode = [eigenvalue_slopes(A, slopes, mode.eigenvalue) for mode in nominal.modes]
+    by_mode = [eigenvalue_slopes(nominal.system.A, slopes, mode.eigenvalue) for mode in nominal.modes]
 
     def judge(deviation: np.ndarray) -> Assessed:
+        """Verdicts on the moved eigenvalues."""
         modes = tuple(
             _shifted(mode, complex(slope @ deviation[columns]))
             for mode, slope in zip(nominal.modes, by_mode, strict=True)
@@ -321,7 +323,7 @@ def _first_order(
         verdicts = assess(modes, vehicle_class, category, _n_alpha(moved))
         if with_airframe:
             verdicts += assess_airframe(moved, vehicle_class, category)
-        return Assessed(modes, verdicts)
+        return Assessed(None, modes, verdicts)
 
     return judge
 
