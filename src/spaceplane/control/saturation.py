@@ -122,6 +122,7 @@ def saturated(
         return wanted, given, moment
 
     def rates(t: float, y: np.ndarray) -> np.ndarray:
+        """Time derivatives with the inputs that the limits leave."""
         wanted, given, moment = actual(y)
         x = plant.A @ y[:n] + plant.B @ given
         if gust is not None:

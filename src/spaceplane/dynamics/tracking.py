@@ -99,6 +99,7 @@ def interpolated(grid: Sequence[float], systems: Sequence[StateSpace]) -> System
             raise InputError("systems: all need the same states and inputs in the same order")
 
     def system_of(parameter: float) -> StateSpace:
+        """The system at a value of the parameter, between its neighbours."""
         if not values[0] <= parameter <= values[-1]:
             raise InputError(f"parameter = {parameter:g}: must lie between {values[0]:g} and {values[-1]:g}")
         k = int(np.clip(np.searchsorted(values, parameter) - 1, 0, len(values) - 2))
@@ -151,6 +152,7 @@ def _evaluator(system_of: SystemOf) -> Callable[[float], Spectrum]:
     states: list[tuple[str, ...]] = []
 
     def at(value: float) -> Spectrum:
+        """Eigenvalues and eigenvectors at a value of the parameter."""
         value = float(value)
         if value not in cache:
             system = system_of(value)

@@ -89,6 +89,7 @@ def _amplitudes_at_wall(mach: float, half_angle: float, shock: float, tilt: floa
     d_s = d_p / p - gamma * d_rho / rho
 
     def rates(theta: float, values: np.ndarray) -> list[float]:
+        """Slopes over theta of the base flow and of the amplitudes."""
         u, v, d_u, d_v, d_w, d_p = values
         rho, p, v_slope, rho_slope, p_slope = base(theta, u, v)
         sine, cotangent = math.sin(theta), 1.0 / math.tan(theta)
