@@ -16,11 +16,13 @@ from spaceplane.vehicle.surface import Surface
 # A part is called thin when more than this share of the grid lines through it leave it within two cells; below that it
 # is the rim near a sharp edge, which every wing has.
 THIN_SHARE = 0.25
-# Measured at wall cells of 0.25 m, on as many cells adapted to the flow and at 0.3 m with two levels at edges, against
-# 0.11 m: see docs/method.md.
+# Measured at wall cells of 0.25 m and on as many cells adapted to the flow, against 0.11 m (docs/method.md); at 0.3 m
+# with two levels at edges, against 0.08 m (docs/uncertainty.md).
 THIN_COST = "3 % (Mach 2.5) to 10 % (Mach 0.8) of its lift slope and 16 to 31 % of its C_m slope"
 THIN_COST_ADAPTED = "1 % of its lift slope and 10 to 12 % of its C_m slope"
-THIN_COST_WITH_EDGES = "1 % of its lift slope and 2 % (Mach 2.5) to 7 % (Mach 0.8) of its C_m slope"
+THIN_COST_WITH_EDGES = (
+    "6 % of its lift slope at Mach 0.8, below 1 % from Mach 1.5 up, and its C_m slope is 2 to 17 % off up to Mach 2.5"
+)
 
 
 def describe(
