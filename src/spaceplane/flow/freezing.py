@@ -16,8 +16,9 @@ import numpy as np
 from spaceplane.flow.compiled import LANES
 from spaceplane.flow.history import History
 
-SPAN = 6
-"""Iterations without a gain after which something is done."""
+SPAN, GAIN = 6, 0.02
+"""Iterations in which a residual that gains no more than this many decades stands still, so that something is done. One
+that creeps on by a thousandth of a decade at a time stands as well."""
 
 FROM_AGE, LATE_AGE = 20, 50
 """Iterations in which flows form: nothing is held in them; and from which on a flow that has still not settled has its
@@ -59,7 +60,7 @@ class Freezer:
         for lane in np.flatnonzero(~self.frozen):
             history = histories[lane]
             spread = history.spread(SPAN)
-            stalled = history.age > FROM_AGE and history.gain(SPAN) <= 0.0
+            stalled = history.age > FROM_AGE and history.gain(SPAN) <= GAIN
             ready = self.held[lane] and not self._rest[lane] and FROM_DROP < drop[lane] < TO_DROP
             if stalled and ready and spread < STEADY:
                 self.frozen[lane] = True

@@ -19,9 +19,13 @@ ACCELERATED_BELOW_MACH, ACCELERATED_AFTER_DROP = 2.0, 2.0
 """Anderson acceleration drives blunt-base flows apart at Mach 2.5 and more, until they are close to steady."""
 
 WORTH_WAITING = 0.1
-"""Decades that a residual must gain in two windows to be worth waiting for, once the forces stand."""
+"""Decades that a residual must gain in some windows to be worth waiting for, once the forces stand."""
 
-FORMED_AT, FORMING_CFL, FORMING_GROWTH = 2.0, 40.0, 1.3
+PATIENCE, PATIENT_FROM_MACH = (2, 8), 1.2
+"""Those windows, below and from this Mach number on. Slower flows have base wakes that may never come to rest; faster
+ones do, though some stand still at two decades and a half for fifty iterations before they go on falling."""
+
+FORMED_AT, FORMING_CFL, FORMING_GROWTH = 1.7, 40.0, 1.3
 """Decades at which a supersonic flow counts as formed; CFL number and its growth from one step to the next until then,
 from Mach 2.5 on: bolder steps throw wakes about that must then come to rest, if they do not break."""
 
@@ -123,12 +127,12 @@ class Steering:
         return np.maximum(self.cfl * factor, min(0.5, self.caution.cfl_start))
 
 
-def converged(history: History, settings: FlowSettings) -> bool:
+def converged(history: History, settings: FlowSettings, patience: int = PATIENCE[0]) -> bool:
     """Whether a condition is good on the fine mesh: residual and force window together.
 
-    Either the residual fell by `residual_drop` with forces within the tolerance; or, where it gains nothing more,
-    by half a decade more than `least_drop` with forces standing over two windows, or by `least_drop` with forces
-    standing over three.
+    Either the residual fell by `residual_drop` with forces within the tolerance; or, where it gained nothing more in
+    `patience` windows, by half a decade more than `least_drop` with forces standing over two windows, or by
+    `least_drop` with forces standing over three.
     """
     window, tolerance, drop = settings.window, settings.force_tolerance, history.drop()
     length = len(history.residual)
@@ -136,7 +140,7 @@ def converged(history: History, settings: FlowSettings) -> bool:
         return False
     if drop >= settings.residual_drop:
         return history.spread(window) < tolerance
-    if history.gain(2 * window) > WORTH_WAITING:
+    if history.gain(patience * window) > WORTH_WAITING:
         return False
     if drop >= settings.least_drop + 0.5:
         return length > 2 * window and history.spread(2 * window) < tolerance
@@ -153,7 +157,7 @@ def stalled(history: History, settings: FlowSettings) -> bool:
 
 def finished(history: History, settings: FlowSettings) -> bool:
     """Whether a condition leaves the ensemble before its iterations are used up."""
-    return converged(history, settings) or stalled(history, settings)
+    return converged(history, settings, history.patience) or stalled(history, settings)
 
 
 def march(
@@ -181,7 +185,11 @@ def march(
         History by condition.
     """
     mach = ensemble.conditions.mach
-    histories = {condition: History(impulsive=norm) for condition, norm in enumerate(ensemble.impulsive_norms())}
+    patience = np.where(mach < PATIENT_FROM_MACH - 1e-6, *PATIENCE).tolist()
+    impulsive_norms = ensemble.impulsive_norms()
+    histories = {
+        c: History(norm, windows) for c, (norm, windows) in enumerate(zip(impulsive_norms, patience, strict=True))
+    }
     steering = Steering(mach[ensemble.lanes], caution, impulsive)
     freezer = Freezer()
     waiting = deque(range(ensemble.count, len(mach)))

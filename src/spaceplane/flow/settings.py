@@ -36,7 +36,7 @@ class FlowSettings:
         cfl_start: first pseudo-time CFL number; falls to 5 between Mach 2 and 2.5. The impulsive start on the coarsest
             level uses a fifth of it, falling to 1 between Mach 2 and 5.
         cfl_max: largest CFL number; falls to 60 at Mach 5 and to 20 from Mach 10 on, and from Mach 2.5 on it is 40
-            until the residual has fallen two decades.
+            until the residual has fallen 1.7 decades.
         sweeps: symmetric Gauss-Seidel sweeps per iteration.
         anderson_depth: earlier iterates combined by Anderson acceleration, at most three from Mach 1.2 up; 0 switches
             it off.
