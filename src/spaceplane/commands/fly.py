@@ -21,7 +21,9 @@ def fly(
     source: Annotated[
         str,
         typer.Argument(
-            metavar="SOURCE", help="Aerodynamic model: horus-2b-published, a .nc file or a folder of tables."
+            metavar="SOURCE",
+            help="Aerodynamic model: horus-2b-published, a folder of `spaceplane database`, a .nc file or a folder of "
+            "tables.",
         ),
     ],
     mach: Annotated[
