@@ -34,7 +34,7 @@ def database(
         typer.Option(
             "--tier",
             metavar="euler|fast",
-            help="Euler solver (minutes), or local inclination from Mach 2 up (seconds).",
+            help="Euler solver (minutes), or local inclination, from Mach 2 up.",
         ),
     ] = "euler",
     mach: Annotated[
@@ -189,8 +189,7 @@ def _computed(subject: Vehicle, settings: TableSettings, store: Path, workers: i
 
         def on_change(p) -> None:
             left = "" if p.remaining_s is None else f", about {p.remaining_s / 60:.0f} min left"
-            now = f": {p.running[0]}" if p.running else ""
-            tell(f"{p.done} of {p.total} blocks ({p.reused} from the store){left}{now}", p.fraction)
+            tell(f"{settings.tier} flow: {p.done} of {p.total} blocks ({p.reused} from the store){left}", p.fraction)
 
         before = (lambda: compile_all(tell)) if settings.tier == EULER else None
         return study.run(subject, settings, store, on_change, workers, before=before)

@@ -24,8 +24,9 @@ def export(
         str,
         typer.Argument(
             metavar="SOURCE",
-            help="Aerodynamic model: horus-2b-published, a folder of `spaceplane database`, a .nc file, a .toml file of "
-            "derivatives (of `modes`; linear) or a folder of tables; for csv and netcdf also a folder that `spaceplane analyse` wrote.",
+            help="Aerodynamic model: horus-2b-published, a folder of `spaceplane database`, a .nc file, a .toml file "
+            "of derivatives (of `modes`; linear) or a folder of tables; for csv and netcdf also a folder of "
+            "`spaceplane analyse`.",
         ),
     ],
     out: Annotated[

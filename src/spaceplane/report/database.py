@@ -107,7 +107,7 @@ def page(found: Found, drawn: dict[str, bytes]) -> str:
     lines = [
         f"Source: {model.source}.",
         *(
-            text[0].upper() + text[1:] + "."
+            f"{text[0].upper()}{text[1:]}."
             for text in (*statement.reference_lines(model), statement.unknown_line(model))
         ),
         f"Limits: {'; '.join(statement.limit_lines(model))}. Linear between nodes, nothing outside and in empty cells.",
@@ -145,6 +145,8 @@ def _remarks(found: Found) -> list[Table]:
         )
         for one in found.remarks
     ]
-    note = "Oscillating: the mean of the final window is in the tables. Failed: the cell is empty, and nothing is filled in."
+    note = (
+        "Oscillating: the mean of the final window is in the tables. Failed: the cells are empty; nothing is filled in."
+    )
     columns = ("shape", "condition", "Mach", "alpha, deg", "verdict", "reason")
     return [Table("Not converged", 2, note, columns, tuple(rows))]

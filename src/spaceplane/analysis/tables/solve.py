@@ -85,11 +85,8 @@ def blocks(settings: TableSettings) -> tuple[Block, ...]:
     found = []
     for surface, deflection in shapes:
         about = 1 if surface else BESIDE[settings.steps.rate > 0.0]
-        many = (
-            max(CONDITIONS_IN_BLOCK // (about * len(settings.alphas)), 1)
-            if settings.tier == EULER
-            else len(settings.machs)
-        )
+        fitting = max(CONDITIONS_IN_BLOCK // (about * len(settings.alphas)), 1)
+        many = fitting if settings.tier == EULER else len(settings.machs)
         found += [Block(surface, deflection, settings.machs[k : k + many]) for k in range(0, len(settings.machs), many)]
     return tuple(found)
 
