@@ -20,7 +20,7 @@ from spaceplane.study.database import run, with_one_wall_cell
 from spaceplane.vehicle.presets import horus_2b, load
 
 VEHICLE = horus_2b()
-SMALL = ["--tier", "fast", "--mach", "4,8", "--alpha", "10,25", "--elevon", "-15,15", "--rudder", "none"]
+SMALL = ["--tier", "fast", "--mach", "4,8", "--alpha", "10,24", "--elevon", "-15,15", "--rudder", "none"]
 
 
 def radians(*degrees):
@@ -148,15 +148,23 @@ def test_it_flies_and_exports_without_a_vehicle(capfd, folder, tmp_path):
 
 
 def test_the_centre_of_mass_of_a_flight_may_be_another(capfd, folder, tmp_path):
-    """Further forward is more stable, by the shift over the chord where the normal force alone moves the moment."""
-    margins = {}
-    for station in (14.8, 14.7):
-        out = tmp_path / str(station)
-        options = ["--mach", "5", "--center-of-mass", f"{station},0,0", "--out", out]
+    """The pitching moment about it is zero at the trim, and the trim is not that of another centre."""
+    model, alpha, found = read_source(str(folder)).model, math.radians(24.0), {}
+    for station in (14.8, 14.6):
+        options = ["--mach", "5", "--center-of-mass", f"{station},0,0.1", "--out", tmp_path]
         assert run_cli(capfd, "fly", folder, *options)[0] == 0
-        margins[station] = json.loads((out / "descent.json").read_text())["points"][0]["trim"]["static_margin"]
-    gained = margins[14.7] - margins[14.8]
-    assert gained == pytest.approx(0.1 / 23.0, rel=0.1)
+        trim = json.loads((tmp_path / "descent.json").read_text())["points"][0]["trim"]
+        elevator, flap = (math.radians(trim[name]) for name in ("elevator_deg", "body_flap_deg"))
+        deflections = {"elevon_left": elevator, "elevon_right": elevator, "body_flap": flap}
+        C = model.coefficients(5.0, alpha, deflections=deflections)
+        normal = C["CL"] * math.cos(alpha) + C["CD"] * math.sin(alpha)
+        axial = C["CD"] * math.cos(alpha) - C["CL"] * math.sin(alpha)
+        assert C["Cm"] + (normal * (station - 14.8) - axial * 0.1) / 23.0 == pytest.approx(0.0, abs=1e-9)
+        found[station] = elevator + flap
+    # Further forward the nose is heavier: trailing edges go up.
+    assert found[14.6] < found[14.8] - 0.01
+    code, _, err = run_cli(capfd, "fly", folder, "--center-of-mass", "14.8", "--out", tmp_path)
+    assert code == 2 and "--center-of-mass: '14.8' has 1 numbers, 3 are needed" in err
 
 
 @pytest.mark.parametrize(
