@@ -215,5 +215,5 @@ def test_blocks_hold_what_an_interruption_may_cost():
         "undeflected, Mach 2.5 to 10",
         "undeflected, Mach 20",
     ]
-    assert len(asked) == 3 + 4 + 2 + 4 and asked[3].label == "elevon_left -20 deg, Mach 0.8 to 20"
+    assert len(asked) == 3 + 6 + 2 + 3 and asked[3].label == "elevon_left -40 deg, Mach 0.8 to 20"
     assert len(blocks(default_settings("fast"))) == 1 + 8 + 4 + 5

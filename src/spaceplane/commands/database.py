@@ -53,7 +53,7 @@ def database(
     body_flap: Annotated[
         str | None, typer.Option("--body-flap", metavar="DEG,...|none", help="Deflections of the body flap.")
     ] = None,
-    rates: Annotated[bool, typer.Option("--rates/--no-rates", help="Slopes with roll, pitch and yaw rate.")] = True,
+    damping: Annotated[bool, typer.Option(help="Slopes with roll, pitch and yaw rate.")] = True,
     method: Annotated[
         str | None, typer.Option("--method", metavar="NAME", help="Of the fast tier, as for `flow`.")
     ] = None,
@@ -95,7 +95,7 @@ def database(
         tier,
         {"machs": mach, "alphas": alpha},
         {"elevon_left": elevon, "rudder_left": rudder, "body_flap": body_flap},
-        rates,
+        damping,
         method,
         given,
         options.precision(precision),
@@ -123,7 +123,7 @@ def _settings(
     tier: str,
     grid: dict[str, str | None],
     deflections: dict[str, str | None],
-    rates: bool,
+    damping: bool,
     method: str | None,
     given: dict[str, str | None],
     precision: str,
@@ -142,7 +142,7 @@ def _settings(
 
     if tier not in TIERS:
         raise InputError("--tier: " + unknown_name("tier", tier, TIERS))
-    fields: dict = {} if rates else {"steps": DerivativeSteps(rate=0.0)}
+    fields: dict = {} if damping else {"steps": DerivativeSteps(rate=0.0)}
     if grid["machs"] is not None:
         fields["machs"] = tuple(numbers("--mach", grid["machs"]))
     if grid["alphas"] is not None:

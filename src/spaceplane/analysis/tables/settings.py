@@ -31,9 +31,9 @@ _MACHS = {EULER: (0.8, 1.2, 1.5, 2.5, 5.0, 10.0, 20.0), FAST: (2.0, 2.5, 3.0, 4.
 _ALPHAS_DEG = {EULER: (0.0, 10.0, 20.0, 30.0, 40.0), FAST: tuple(float(a) for a in range(0, 46, 5))}
 _DEFLECTIONS_DEG = {
     EULER: {
-        "elevon_left": (-20.0, -10.0, 0.0, 10.0, 20.0),
+        "elevon_left": (-40.0, -20.0, -10.0, 0.0, 10.0, 20.0, 40.0),
         "rudder_left": (0.0, 20.0, 40.0),
-        "body_flap": (-20.0, -10.0, 0.0, 15.0, 30.0),
+        "body_flap": (-20.0, 0.0, 15.0, 30.0),
     },
     FAST: {
         "elevon_left": tuple(float(d) for d in range(-40, 41, 10)),
