@@ -136,7 +136,7 @@ def _remarks(found: Found) -> list[Table]:
         return []
     rows = [
         (
-            one.shape,
+            one.shape if one.mach is None else one.shape.partition(", Mach")[0],
             one.condition or "-",
             "-" if one.mach is None else f"{one.mach:g}",
             "-" if one.alpha_deg is None or not math.isfinite(one.alpha_deg) else f"{one.alpha_deg:g}",
