@@ -108,7 +108,7 @@ def folder(tmp_path_factory):
         timeout=300,
     )
     assert done.returncode == 0, done.stderr
-    assert "5 blocks" not in done.stdout and "database.html" in done.stdout
+    assert "8 blocks, 0 from the store" in done.stdout and "database.html" in done.stdout
     return place / "out"
 
 
@@ -165,6 +165,14 @@ def test_the_centre_of_mass_of_a_flight_may_be_another(capfd, folder, tmp_path):
     assert found[14.6] < found[14.8] - 0.01
     code, _, err = run_cli(capfd, "fly", folder, "--center-of-mass", "14.8", "--out", tmp_path)
     assert code == 2 and "--center-of-mass: '14.8' has 1 numbers, 3 are needed" in err
+
+
+def test_the_same_command_again_computes_nothing_and_tells_the_record(capfd, folder):
+    options = [folder.parent / "heavy.yaml", *SMALL, "--out", folder]
+    code, out, _ = run_cli(capfd, "database", *options, "--json", "-")
+    assert code == 0 and json.loads(out) == json.loads((folder / "database.json").read_text())
+    code, out, _ = run_cli(capfd, "database", *options)
+    assert code == 0 and "8 blocks, 8 from the store" in out
 
 
 @pytest.mark.parametrize(
