@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from spaceplane import __version__
-from spaceplane.commands import analyse, compare, export, flow, fly, geometry, modes, report, study, validate
+from spaceplane.commands import analyse, compare, database, export, flow, fly, geometry, modes, report, study, validate
 from spaceplane.commands.arguments import require_places, spread_assignments
 from spaceplane.errors import InputError
 
@@ -29,6 +29,7 @@ app = typer.Typer(
 app.command("analyse", epilog=analyse.EXAMPLE)(analyse.analyse)
 app.command("geometry", epilog=geometry.EXAMPLE)(geometry.geometry)
 app.command("flow", epilog=flow.EXAMPLE)(flow.flow)
+app.command("database", epilog=database.EXAMPLE)(database.database)
 app.command("fly", epilog=fly.EXAMPLE)(fly.fly)
 app.command("modes", epilog=modes.EXAMPLE)(modes.modes)
 app.add_typer(study.app, name="study")

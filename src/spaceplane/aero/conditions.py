@@ -18,6 +18,8 @@ BASE = "base"
 RATES = ("p", "q", "r")
 LARGEST_RATE = 0.05
 """Reduced rate: a wing tip then moves at a twentieth of the flight speed, well within what is linear."""
+QUANTITIES = ("alpha", "mach", "beta", *RATES)
+"""What is varied about a flight point."""
 MIRRORED = ("beta", "p", "r")
 """Quantities that change sign in a mirror; at zero one side of them stands for the other on a symmetric vehicle."""
 
@@ -127,6 +129,7 @@ def plan(
     gamma: float = 1.4,
     reference: ReferenceLengths | None = None,
     gas: str = PERFECT,
+    quantities: Sequence[str] = QUANTITIES,
 ) -> ConditionPlan:
     """Expand flight points into the ensemble that gives their derivatives.
 
@@ -138,6 +141,7 @@ def plan(
         gamma: ratio of specific heats.
         reference: chord, span and moment centre, SI, for steady rates; None leaves the damping derivatives out.
         gas: name in `flow.solution.GASES`.
+        quantities: those of `QUANTITIES` that are varied.
 
     Raises:
         InputError: a Mach number that is not positive and finite, or an angle that is not finite.
@@ -153,6 +157,8 @@ def plan(
             sizes = {"alpha": steps.alpha, "mach": steps.mach_fraction * point.mach, "beta": steps.beta}
             sizes |= rates
             for quantity, full in sizes.items():
+                if quantity not in quantities:
+                    continue
                 size = full * scale
                 mirrored = quantity in MIRRORED and symmetric and point.beta == 0.0
                 plus = ensemble.add(number, point, f"{quantity}{'' if mirrored else '+'}{mark}", {quantity: size})

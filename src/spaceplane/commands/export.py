@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from spaceplane.commands import options
+from spaceplane.commands import options, sources
 from spaceplane.commands.arguments import numbers, writable_file, write_json
 from spaceplane.errors import InputError
 from spaceplane.files import writable_folder
@@ -24,8 +24,9 @@ def export(
         str,
         typer.Argument(
             metavar="SOURCE",
-            help="Aerodynamic model: horus-2b-published, a .nc file, a .toml file of derivatives (of `modes`; linear) "
-            "or a folder of tables; for csv and netcdf also a folder that `spaceplane analyse` wrote.",
+            help="Aerodynamic model: horus-2b-published, a folder of `spaceplane database`, a .nc file, a .toml file "
+            "of derivatives (of `modes`; linear) a folder of tables, or one of `spaceplane analyse` (jsbsim and "
+            "tudat: linear about one flight point).",
         ),
     ],
     out: Annotated[
@@ -51,6 +52,7 @@ def export(
     name: Annotated[
         str | None, typer.Option("--name", metavar="NAME", help="jsbsim: name of the aircraft; the model's by default.")
     ] = None,
+    point: sources.Point = None,
     json_file: options.JsonFile = None,
 ) -> int:
     """Aerodynamic models for JSBSim and Tudat; models and analyses as CSV tables or NetCDF files.
@@ -68,9 +70,11 @@ def export(
     if form in TABLES and not is_model(source):
         if vehicle is not None:
             raise InputError("--vehicle: an analysis has its own vehicle")
+        if point is not None:
+            raise InputError(f"--point: {point}, has no effect: {form} holds all flight points of an analysis")
         files = _of_analysis(form, source, out, json_file)
     else:
-        files = _of_model(form, source, out, vehicle, center, name, json_file)
+        files = _of_model(form, source, out, (vehicle, point), center, name, json_file)
     write_json({"files": [str(path) for path in files]}, json_file)
     if str(json_file) != "-":
         for path in files:
@@ -92,15 +96,16 @@ def _of_model(
     form: str,
     source: str,
     out: Path | None,
-    vehicle: str | None,
+    which: tuple[str | None, str | None],
     center: list[float] | None,
     name: str | None,
     json_file: Path | None,
 ) -> list[Path]:
     from spaceplane.decks import jsbsim, tables, tudat
-    from spaceplane.decks.source import is_table_set, read_source
+    from spaceplane.decks.source import is_table_set
 
-    found = read_source(source, vehicle)
+    vehicle, point = which
+    found = sources.read(source, vehicle, point)
     if vehicle is not None and form != "jsbsim" and not is_table_set(source):
         raise InputError(f"--vehicle: has no effect on {form} of {source}")
     if form == "jsbsim":

@@ -8,8 +8,8 @@ from typing import Annotated
 
 import typer
 
-from spaceplane.commands import options
-from spaceplane.commands.arguments import mach_numbers, number, writable_file, write_json
+from spaceplane.commands import options, sources
+from spaceplane.commands.arguments import mach_numbers, number, numbers, writable_file, write_json
 from spaceplane.commands.progress import progress_bar
 from spaceplane.errors import InputError
 from spaceplane.files import writable_folder
@@ -21,7 +21,9 @@ def fly(
     source: Annotated[
         str,
         typer.Argument(
-            metavar="SOURCE", help="Aerodynamic model: horus-2b-published, a .nc file or a folder of tables."
+            metavar="SOURCE",
+            help="Aerodynamic model: horus-2b-published, a folder of `spaceplane database`, a .nc file, a folder of "
+            "tables, or a folder of `spaceplane analyse` (linear about one flight point).",
         ),
     ],
     mach: Annotated[
@@ -46,6 +48,15 @@ def fly(
         str | None,
         typer.Option("--vehicle", metavar="VEHICLE", help="Preset or YAML file with mass and reference lengths."),
     ] = None,
+    point: sources.Point = None,
+    center_of_mass: Annotated[
+        str | None,
+        typer.Option(
+            "--center-of-mass",
+            metavar="x,y,z",
+            help="Metres aft of the nose, to the right, up; the moment centre of the model by default.",
+        ),
+    ] = None,
     out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder to write into.")] = Path("out/fly"),
     json_file: options.JsonFile = None,
 ) -> int:
@@ -59,20 +70,25 @@ def fly(
     given |= {"form": form, "vehicle_class": vehicle_class, "category": category}
     given |= {} if machs is None else {"machs": tuple(machs)}
     given |= {} if body_flap is None else {"body_flap": math.radians(number("--body-flap", body_flap, "deg"))}
+    center = None if center_of_mass is None else numbers("--center-of-mass", center_of_mass, "m", 3)
     writable_file(json_file, "--json")
     from spaceplane.analysis.descent import DescentSettings, descend
-    from spaceplane.decks.source import PUBLISHED, read_source
+    from spaceplane.decks.source import PUBLISHED
     from spaceplane.dynamics.trim.longitudinal import HORUS_2B_BODY_FLAP
 
     if source == PUBLISHED:
         given.setdefault("body_flap", HORUS_2B_BODY_FLAP)
+    found = sources.read(source, vehicle, point)
+    if machs is None and sources.is_analysis(source):
+        # The middle of the model's range is the one Mach number that it is made about.
+        given["machs"] = (round(float(found.model.mach.mean()), 9),)
     settings = DescentSettings(**given)
-    found = read_source(source, vehicle)
     if found.mass is None:
         raise InputError("--vehicle: needed, for the mass that the tables do not give")
+    model = found.model if center is None else found.model.moved((center[0], center[1], center[2]))
     folder = writable_folder(out, "--out")
     with progress_bar() as tell:
-        descent = descend(found.model, found.mass, settings, tell)
+        descent = descend(model, found.mass, settings, tell)
     from spaceplane.report import descent as report
 
     files = report.write(descent, folder)

@@ -9,6 +9,7 @@ from spaceplane.aero.model import netcdf
 from spaceplane.aero.model.model import AeroModel
 from spaceplane.aero.model.published import horus_2b_published
 from spaceplane.aero.model.table_set import read_table_set
+from spaceplane.decks import folder
 from spaceplane.dynamics import derivatives_file
 from spaceplane.errors import InputError, unknown_name
 from spaceplane.vehicle import presets
@@ -33,8 +34,19 @@ class Source:
 
 
 def is_model(source: str) -> bool:
-    """Whether a source is a model: by its name, a `.nc` or `.toml` file or a folder of tables, not an analysis."""
-    return source in NAMES or source.lower().endswith((".nc", ".toml")) or is_table_set(source)
+    """Whether a source is a model: by its name, a `.nc` or `.toml` file, a database or tables, not an analysis."""
+    return (
+        source in NAMES
+        or source.lower().endswith((".nc", ".toml"))
+        or is_table_set(source)
+        or folder.is_database(source)
+        or is_vehicle(source)
+    )
+
+
+def is_vehicle(source: str) -> bool:
+    """Whether a source is a vehicle, a preset or a YAML file, which has no aerodynamic model before its flow."""
+    return (source in presets.PRESETS and not Path(source).is_dir()) or source.lower().endswith((".yaml", ".yml"))
 
 
 def is_table_set(source: str) -> bool:
@@ -47,14 +59,19 @@ def read_source(source: str, vehicle: str | None = None) -> Source:
 
     Args:
         source: a name of `NAMES`, a `.nc` file that `aero.model.netcdf.save` wrote, a `.toml` file of derivatives
-            (`dynamics.derivatives_file`; linear about its flight point), or a folder in the layout of
-            `aero.model.table_set`.
+            (`dynamics.derivatives_file`; linear about its flight point), a folder that `spaceplane database` wrote, or
+            one in the layout of `aero.model.table_set`.
         vehicle: preset or YAML file that the mass and, for a folder of tables, the reference lengths are of; HORUS-2B
-            for its published tables by default.
+            for its published tables by default, and its own vehicle for a database.
 
     Raises:
-        InputError: no such source, one that cannot be read, or a folder of tables without a vehicle.
+        InputError: no such source, one that cannot be read, a vehicle, or a folder of tables without a vehicle.
     """
+    if is_vehicle(source):
+        raise InputError(
+            f"{source}: a vehicle has no aerodynamic model yet; run `spaceplane database {source} --out DIR` first and "
+            "give DIR"
+        )
     if source.lower().endswith(".toml"):
         if vehicle is not None:
             raise InputError(f"--vehicle: {source} has its own vehicle")
@@ -69,10 +86,14 @@ def read_source(source: str, vehicle: str | None = None) -> Source:
     mass = named.mass if named else None
     if path.is_file() and path.suffix.lower() == ".nc":
         return Source(netcdf.load(path), mass)
+    if folder.is_database(path):
+        model, own = folder.read(path)
+        return Source(model, mass or own)
     if not is_table_set(source):
         raise InputError(
             f"{source}: no aerodynamic tables over Mach number and angle of attack; needed is {' or '.join(NAMES)}, a "
-            f".nc file of an aerodynamic model, a .toml file of derivatives or a folder with {TABLE_SET_FILE}"
+            f".nc file of an aerodynamic model, a .toml file of derivatives, a folder of `spaceplane database` or one "
+            f"with {TABLE_SET_FILE}"
         )
     if named is None:
         raise InputError(f"--vehicle: needed, for the reference lengths that the tables in {source} are made with")

@@ -1,7 +1,13 @@
-"""From a surface and free streams to pressures, and to the coefficients that the Euler solver gives too."""
+"""From a surface and free streams to pressures, and to the coefficients that the Euler solver gives too.
+
+A body that turns at steady rates meets the stream at each panel with the velocity V - w x (r - c) at its centroid: its
+inclination, its dynamic pressure and, to first order in the rates, its Mach number are those of that velocity. Shadows
+stay those of the free stream.
+"""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,6 +24,9 @@ from spaceplane.vehicle.surface import Surface
 if TYPE_CHECKING:
     import xarray as xr
 
+MACH_STEP = 0.01
+"""Step of a pressure law's slope with the Mach number, as a fraction of it."""
+
 
 def local_inclination(
     surface: Surface,
@@ -29,7 +38,7 @@ def local_inclination(
 
     Args:
         surface: closed surface.
-        conditions: free streams, from `settings.LEAST_MACH` up.
+        conditions: free streams, from `settings.LEAST_MACH` up, with steady rates or without.
         reference: area, chord, span and moment centre, SI.
         settings: which law acts where.
 
@@ -58,7 +67,7 @@ def pressures(panels: Panels, conditions: FlowConditions, settings: InclinationS
 
     Args:
         panels: of a closed surface.
-        conditions: free streams.
+        conditions: free streams, with steady rates or without.
         settings: which law acts where.
 
     Raises:
@@ -68,21 +77,66 @@ def pressures(panels: Panels, conditions: FlowConditions, settings: InclinationS
     groups = law_groups(panels, settings)
     cp = np.empty((len(conditions), len(panels)))
     winds = direction(conditions.alpha, conditions.beta)
+    turns = conditions.angular_velocity() / np.asarray(conditions.mach, dtype=float)[:, None]
     for wind in np.unique(winds, axis=0):
-        inclination = np.arcsin(np.clip(-(panels.normal @ wind), -1.0, 1.0))
-        struck = inclination > 0.0
-        if settings.shadow:
-            struck &= ~hidden(panels, wind)
-        lee = np.flatnonzero(~struck)
-        turning = np.maximum(-inclination[lee], 0.0)
-        chosen = {name: group[struck[group]] for name, group in groups.items()}
-        angles = {name: inclination[group] for name, group in chosen.items()}
-        for c in np.flatnonzero((winds == wind).all(axis=1)):
-            mach = float(conditions.mach[c])
-            cp[c, lee] = LEEWARD[settings.leeward](mach, conditions.gamma)(turning)
-            for name, group in chosen.items():
-                cp[c, group] = WINDWARD[name](mach, conditions.gamma)(angles[name])
+        shaded = hidden(panels, wind) if settings.shadow else np.zeros(len(panels), dtype=bool)
+        alike = np.flatnonzero((winds == wind).all(axis=1))
+        for turn in np.unique(turns[alike], axis=0):
+            stream = _stream(panels, wind, turn, conditions.center)
+            for c in alike[(turns[alike] == turn).all(axis=1)]:
+                cp[c] = _condition(stream, shaded, groups, settings, float(conditions.mach[c]), conditions.gamma)
     return cp.T
+
+
+@dataclass(frozen=True)
+class _Stream:
+    """What strikes the panels.
+
+    Attributes:
+        inclination: [panel] rad, negative where the panel looks away.
+        speed: [panel] on the free stream's; None where nothing turns.
+    """
+
+    inclination: np.ndarray
+    speed: np.ndarray | None
+
+
+def _stream(panels: Panels, wind: np.ndarray, turn: np.ndarray, center: tuple[float, float, float]) -> _Stream:
+    """The stream as the panels of a body meet it that turns by `turn` [xyz], 1/m, about `center`, m."""
+    if not turn.any():
+        return _Stream(np.arcsin(np.clip(-(panels.normal @ wind), -1.0, 1.0)), None)
+    local = wind - np.cross(turn, panels.center - np.asarray(center, dtype=float))
+    speed = np.linalg.norm(local, axis=1)
+    sine = -np.einsum("px,px->p", panels.normal, local) / np.maximum(speed, 1e-300)
+    return _Stream(np.arcsin(np.clip(sine, -1.0, 1.0)), speed)
+
+
+def _condition(
+    stream: _Stream,
+    shaded: np.ndarray,
+    groups: dict[str, np.ndarray],
+    settings: InclinationSettings,
+    mach: float,
+    gamma: float,
+) -> np.ndarray:
+    """[panel] pressure coefficients, on the free stream's dynamic pressure, at one Mach number."""
+    struck = (stream.inclination > 0.0) & ~shaded
+    lee = np.flatnonzero(~struck)
+    chosen = {name: group[struck[group]] for name, group in groups.items()}
+
+    def at(mach: float) -> np.ndarray:
+        """[panel] on each panel's own dynamic pressure."""
+        cp = np.empty(len(struck))
+        cp[lee] = LEEWARD[settings.leeward](mach, gamma)(np.maximum(-stream.inclination[lee], 0.0))
+        for name, group in chosen.items():
+            cp[group] = WINDWARD[name](mach, gamma)(stream.inclination[group])
+        return cp
+
+    cp = at(mach)
+    if stream.speed is None:
+        return cp
+    change = (at(mach * (1.0 + MACH_STEP)) - at(mach * (1.0 - MACH_STEP))) / (2.0 * MACH_STEP)
+    return (cp + change * (stream.speed - 1.0)) * stream.speed**2
 
 
 def law_groups(panels: Panels, settings: InclinationSettings) -> dict[str, np.ndarray]:

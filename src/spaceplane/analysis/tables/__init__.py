@@ -1,0 +1,1 @@
+"""An aerodynamic model of a vehicle from its own flow: which conditions, each shape's flow, and the tables of them."""

@@ -1,0 +1,78 @@
+"""A flight point of an analysis as a linear aerodynamic model: its own coefficients and slopes, and what is refused."""
+
+import copy
+import math
+
+import pytest
+
+from spaceplane import cli
+from spaceplane.errors import InputError
+from spaceplane.report.local_model import local_model
+from spaceplane.report.read import read_result
+
+
+@pytest.fixture
+def result(out_dir):
+    return copy.deepcopy(read_result(out_dir))
+
+
+def at(result, name):
+    return next(point for point in result["flight_points"] if point["name"] == name)
+
+
+def test_it_gives_back_coefficients_and_derivatives_of_the_flight_point(result):
+    result["vehicle"]["deflections_deg"] = {"elevon_left": -17.5, "elevon_right": -17.5, "body_flap": -20.0}
+    names = [point["name"] for point in result["flight_points"]]
+    for name in names:
+        point, source = at(result, name), local_model(result, name)
+        model, alpha = source.model, math.radians(point["alpha_deg"])
+        deflections = {k: math.radians(v) for k, v in result["vehicle"]["deflections_deg"].items()}
+        found = model.coefficients(point["mach"], alpha, deflections=deflections)
+        for coefficient in ("CL", "CD", "Cm"):
+            assert found[coefficient] == pytest.approx(point["coefficients"][coefficient], abs=1e-12)
+        slopes = model.derivatives(point["mach"], alpha, deflections)
+        for derivative in ("CL_alpha", "Cm_alpha", "CD_M", "Cn_beta", "Cl_beta"):
+            value = point["derivatives"][derivative]["value"]
+            assert getattr(slopes, derivative) == pytest.approx(value, rel=1e-9), derivative
+        for derivative in (d for d in point["derivatives"] if d.endswith("_elevon_left")):
+            value = point["derivatives"][derivative]["value"]
+            assert slopes.controls[derivative] == pytest.approx(value, rel=1e-9), derivative
+        assert source.mass.mass == result["vehicle"]["mass"]["mass_kg"] and name in model.source
+        assert "extrapolated to no deflection" in model.source
+
+
+def test_the_flight_point_must_be_one_of_the_analysis(result):
+    with pytest.raises(InputError, match=r"--point: needed, the analysis has Mach 0\.8, "):
+        local_model(result)
+    with pytest.raises(InputError, match="--point: '7' names 0 flight points"):
+        local_model(result, "7")
+    assert local_model(result, "2.5").model.name == local_model(result, "Mach 2.5").model.name
+    one = result | {"flight_points": result["flight_points"][:1]}
+    assert local_model(one).model.mach.mean() == pytest.approx(one["flight_points"][0]["mach"])
+
+
+def test_a_failed_flow_is_not_filled_in(result):
+    at(result, "Mach 2.5")["derivatives"]["Cn_beta"]["value"] = None
+    with pytest.raises(InputError, match=r"Mach 2\.5: Cn_beta is missing"):
+        local_model(result, "2.5")
+    at(result, "Mach 0.8")["coefficients"]["CL"] = None
+    with pytest.raises(InputError, match="CL is missing"):
+        local_model(result, "0.8")
+
+
+def test_an_analysis_flies_and_becomes_an_aircraft(capfd, out_dir, tmp_path):
+    deck = ["export", "jsbsim", str(out_dir), "--point", "2.5", "--out", str(tmp_path / "deck")]
+    assert cli.run(deck) == 0 and len(list((tmp_path / "deck").rglob("*.xml"))) == 2
+    fly = ["fly", str(out_dir), "--point", "2.5", "--json", str(tmp_path / "fly.json"), "--out", str(tmp_path / "fly")]
+    assert cli.run(fly) in (0, 1)
+    text = (tmp_path / "fly.json").read_text()
+    assert text.count('"altitude_m"') == 1 and '"mach": 2.5' in text
+    for wrong, naming in (
+        (["fly", str(out_dir)], "--point: needed"),
+        (["fly", "horus-2b-published", "--point", "2.5"], "--point: 2.5, goes with a folder of `spaceplane analyse`"),
+        (["fly", str(out_dir), "--vehicle", "horus-2b"], "--vehicle: an analysis has its own vehicle"),
+        (["export", "csv", str(out_dir), "--point", "2.5"], "--point: 2.5, has no effect"),
+    ):
+        capfd.readouterr()
+        assert cli.run([*wrong, "--out", str(tmp_path / "no")]) == 2
+        assert naming in capfd.readouterr().err
