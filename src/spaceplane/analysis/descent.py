@@ -9,20 +9,24 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from spaceplane.aero.model.derivatives import PAIRS
 from spaceplane.aero.model.model import AeroModel, OutsideTables
+from spaceplane.analysis.likelihood import Likelihood, likelihood
 from spaceplane.dynamics.flightpoint import TAEM_BANK_DEG, TAEM_GAMMA_DEG, FlightPoint, taem_point
+from spaceplane.dynamics.given_errors import GivenError
 from spaceplane.dynamics.linearise import FORMS
 from spaceplane.dynamics.modes import Mode
 from spaceplane.dynamics.statespace import StateSpace
 from spaceplane.dynamics.tracking import Branches, follow, interpolated
 from spaceplane.dynamics.trim.longitudinal import PitchTrim, schedule_at, trim_elevator
 from spaceplane.dynamics.trim.maps import trim_map
-from spaceplane.errors import InputError
+from spaceplane.errors import InputError, unknown_name
 from spaceplane.progress import Progress, silent
 from spaceplane.qualities import limits
 from spaceplane.qualities.airframe import Airframe
 from spaceplane.qualities.probability import assess_all
 from spaceplane.qualities.verdict import Verdict
+from spaceplane.vehicle.controls import CONTROLS
 from spaceplane.vehicle.properties import MassProperties
 
 if TYPE_CHECKING:
@@ -31,6 +35,8 @@ if TYPE_CHECKING:
 MACHS = (1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 7.5, 10.0, 12.5, 15.0, 17.5, 20.0)
 MAP_STEP = math.radians(1.0)
 """Step of the trim map in angle of attack, rad."""
+SAMPLES = 1000
+"""Draws of uncertain derivatives at each flight point: probabilities within 0.03."""
 
 
 @dataclass(frozen=True)
@@ -44,6 +50,8 @@ class DescentSettings:
             chooses the one that leaves the elevator the largest margin.
         form: of the linear model, see `dynamics.linearise.FORMS`.
         vehicle_class, category: of MIL-F-8785C.
+        uncertainty: errors of derivatives, C_L and C_D, for probabilities of levels; empty for none.
+        samples: draws at each flight point.
 
     Raises:
         InputError: Mach numbers that do not increase, or an unknown form, class or category.
@@ -56,6 +64,8 @@ class DescentSettings:
     form: str = FORMS[0]
     vehicle_class: str = "III"
     category: str = "B"
+    uncertainty: Mapping[str, GivenError] = field(default_factory=dict)
+    samples: int = SAMPLES
 
     def __post_init__(self) -> None:
         machs = np.asarray(self.machs, dtype=float)
@@ -76,6 +86,7 @@ class DescentPoint:
         system: linear model about the trim; None without.
         modes, verdicts: of it.
         reason: why there is no trim or no linear model; empty where there is.
+        likelihood: what moves the modes and how certain they are; None without a linear model.
     """
 
     point: FlightPoint
@@ -84,6 +95,7 @@ class DescentPoint:
     modes: tuple[Mode, ...] = ()
     verdicts: tuple[Verdict, ...] = ()
     reason: str = ""
+    likelihood: Likelihood | None = None
 
 
 @dataclass(frozen=True)
@@ -121,9 +133,11 @@ def descend(
         progress: called with (phase, done, total, text).
 
     Raises:
-        InputError: a Mach number outside the descent of the thesis, or a model without elevons.
+        InputError: a Mach number outside the descent of the thesis, a model without elevons, or an error of a
+            derivative that the model does not know.
     """
     settings = settings or DescentSettings()
+    _check_errors(settings.uncertainty, model)
     say = progress or silent
     points = [taem_point(m, gamma_deg=settings.gamma_deg, bank_deg=settings.bank_deg) for m in settings.machs]
     say("trim map", 0, 1, "")
@@ -156,7 +170,22 @@ def _at(model: AeroModel, mass: MassProperties, point: FlightPoint, settings: De
         return DescentPoint(point, trim, reason=f"outside the tables: {error}")
     airframe = Airframe(point, mass, model.reference, derivatives, 0.0, trim.elevator)
     assessed = assess_all(airframe, settings.vehicle_class, settings.category, settings.form)
-    return DescentPoint(point, trim, assessed.system, assessed.modes, assessed.verdicts)
+    judged = (settings.vehicle_class, settings.category, settings.form)
+    certain = likelihood(airframe, assessed, settings.uncertainty, *judged, settings.samples)
+    return DescentPoint(point, trim, assessed.system, assessed.modes, assessed.verdicts, likelihood=certain)
+
+
+def _check_errors(errors: Mapping[str, GivenError], model: AeroModel) -> None:
+    """Refuse errors that cannot act, before anything is computed: a misspelt one must not pass for certain."""
+    lag = ("CL_alphadot", "Cm_alphadot")
+    unknown = (*model.unknown(), *lag)
+    for name, error in errors.items():
+        surface = name.split("_", 1)[-1]
+        if surface in PAIRS or (surface in CONTROLS and name in unknown):
+            known = [f"{c}_{s}" for s, table in model.surfaces.items() for c in table.increments]
+            raise InputError(f"uncertainty {unknown_name('derivative of this model', name, known)}")
+        if error.relative and name in unknown:
+            raise InputError(f"uncertainty {name}: the model takes it as zero; give its half width, not a share")
 
 
 def _followed(points: Sequence[DescentPoint]) -> Branches | None:

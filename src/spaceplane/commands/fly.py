@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from spaceplane.commands import options
-from spaceplane.commands.arguments import mach_numbers, number, writable_file, write_json
+from spaceplane.commands.arguments import count, mach_numbers, number, writable_file, write_json
 from spaceplane.commands.progress import progress_bar
 from spaceplane.errors import InputError
 from spaceplane.files import writable_folder
@@ -46,6 +46,18 @@ def fly(
         str | None,
         typer.Option("--vehicle", metavar="VEHICLE", help="Preset or YAML file with mass and reference lengths."),
     ] = None,
+    uncertainty: Annotated[
+        str | None,
+        typer.Option(
+            "--uncertainty",
+            metavar="NAME=ERROR[,...]",
+            help="Half widths of 95 % intervals of derivatives (per rad), CL and CD: Cm_alpha=10%,Cn_beta=0.01 or "
+            "all=10%. Levels then come with probabilities.",
+        ),
+    ] = None,
+    samples: Annotated[
+        str | None, typer.Option("--samples", metavar="N", help="Draws for them at each flight point; 1000 by default.")
+    ] = None,
     out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder to write into.")] = Path("out/fly"),
     json_file: options.JsonFile = None,
 ) -> int:
@@ -59,11 +71,18 @@ def fly(
     given |= {"form": form, "vehicle_class": vehicle_class, "category": category}
     given |= {} if machs is None else {"machs": tuple(machs)}
     given |= {} if body_flap is None else {"body_flap": math.radians(number("--body-flap", body_flap, "deg"))}
+    if samples is not None:
+        if uncertainty is None:
+            raise InputError("--samples: goes with --uncertainty")
+        given["samples"] = count("--samples", samples, "draws")
     writable_file(json_file, "--json")
     from spaceplane.analysis.descent import DescentSettings, descend
     from spaceplane.decks.source import PUBLISHED, read_source
+    from spaceplane.dynamics.given_errors import read_errors
     from spaceplane.dynamics.trim.longitudinal import HORUS_2B_BODY_FLAP
 
+    if uncertainty is not None:
+        given["uncertainty"] = read_errors("--uncertainty", uncertainty)
     if source == PUBLISHED:
         given.setdefault("body_flap", HORUS_2B_BODY_FLAP)
     settings = DescentSettings(**given)
@@ -74,6 +93,7 @@ def fly(
     with progress_bar() as tell:
         descent = descend(found.model, found.mass, settings, tell)
     from spaceplane.report import descent as report
+    from spaceplane.report import descent_likelihood
 
     files = report.write(descent, folder)
     write_json(report.record(descent), json_file)
@@ -82,6 +102,7 @@ def fly(
         for one in descent.points:
             if one.trim is None:
                 typer.echo(f"Mach {one.point.mach:g}: no trim: {one.reason}", err=True)
+        descent_likelihood.print_levels(descent)
         typer.echo(f"{len(trimmed)} of {len(descent.points)} flight points trimmed")
         typer.echo(f"report: {files['html']}")
     return 0 if trimmed else 1

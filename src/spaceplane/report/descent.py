@@ -9,11 +9,11 @@ from pathlib import Path
 
 from spaceplane import __version__
 from spaceplane.analysis.descent import Descent, DescentPoint
-from spaceplane.dynamics.modes import Mode, to_record
+from spaceplane.dynamics.modes import Mode
 from spaceplane.files import json_text, renamed_when_done, told, write_text
 from spaceplane.plain import finite
 from spaceplane.qualities.verdict import Verdict
-from spaceplane.qualities.verdict import to_record as verdict_record
+from spaceplane.report import descent_likelihood
 from spaceplane.report.figures_dynamics import over_parameter, phasors, root_locus
 from spaceplane.report.plain_page import Table, document, picture_html, table_html
 from spaceplane.report.read import level_text
@@ -60,6 +60,7 @@ def record(descent: Descent) -> dict:
         "form": settings.form,
         "class": settings.vehicle_class,
         "category": settings.category,
+        "uncertainty": descent_likelihood.given_record(settings.uncertainty),
         "points": [_point_record(one) for one in descent.points],
         "events": [
             {
@@ -93,8 +94,7 @@ def _point_record(one: DescentPoint) -> dict:
             "static_margin": finite(trim.static.margin),
             "Cm_alpha": finite(trim.static.Cm_alpha),
         },
-        "modes": [to_record(mode) for mode in one.modes],
-        "verdicts": [verdict_record(verdict) for verdict in one.verdicts],
+        **descent_likelihood.point_record(one),
     }
 
 
@@ -109,7 +109,7 @@ def pictures(descent: Descent) -> dict[str, bytes]:
     flown = [one for one in descent.points if one.modes]
     if flown:
         drawn["eigenvectors"] = phasors(flown[0].modes, flown[0].point.velocity)
-    return drawn
+    return drawn | descent_likelihood.pictures(descent)
 
 
 def page(descent: Descent, drawn: dict[str, bytes]) -> str:
@@ -136,12 +136,14 @@ _BELOW = {
         ("root-locus", "Root locus along the descent"),
         ("eigenvectors", "Eigenvectors at the slowest flight point"),
     ],
+    **descent_likelihood.BELOW,
 }
 
 
 def tables(descent: Descent) -> list[Table]:
     """Trim, modes and levels by Mach number."""
-    return [_trims(descent), _modes(descent), *_events(descent), _levels(descent)]
+    likely = descent_likelihood.tables(descent)
+    return [_trims(descent), _modes(descent), *_events(descent), _levels(descent), *likely]
 
 
 def _trims(descent: Descent) -> Table:
