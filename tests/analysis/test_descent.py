@@ -30,7 +30,9 @@ MASS = horus_2b().mass
 
 @pytest.fixture(scope="module")
 def descent():
-    return descend(horus_2b_published(), MASS, DescentSettings((1.5, 2.0, 2.5, 10.0), body_flap=HORUS_2B_BODY_FLAP))
+    return descend(
+        horus_2b_published(), MASS, DescentSettings((1.5, 2.0, 2.5, 5.0, 10.0), body_flap=HORUS_2B_BODY_FLAP)
+    )
 
 
 def test_the_trim_at_the_taem_interface(descent):
@@ -85,7 +87,7 @@ def test_a_flap_held_elsewhere_moves_the_elevator_the_other_way():
 def test_the_page_and_the_record_are_written_whole(descent, tmp_path):
     paths = report.write(descent, tmp_path)
     record = json.loads(paths["json"].read_text())
-    assert [point["mach"] for point in record["points"]] == [1.5, 2.0, 2.5, 10.0]
+    assert [point["mach"] for point in record["points"]] == [1.5, 2.0, 2.5, 5.0, 10.0]
     page = paths["html"].read_text()
     for text in ("Trim", "Modes", "Events along the descent", "Levels of MIL-F-8785C", "data:image/png"):
         assert text in page

@@ -12,12 +12,13 @@ import numpy as np
 from spaceplane.aero.model.derivatives import PAIRS
 from spaceplane.aero.model.model import AeroModel, OutsideTables
 from spaceplane.analysis.likelihood import Likelihood, likelihood
+from spaceplane.analysis.tracked import Tracked, track
 from spaceplane.dynamics.flightpoint import TAEM_BANK_DEG, TAEM_GAMMA_DEG, FlightPoint, taem_point
 from spaceplane.dynamics.given_errors import GivenError
 from spaceplane.dynamics.linearise import FORMS
 from spaceplane.dynamics.modes import Mode
 from spaceplane.dynamics.statespace import StateSpace
-from spaceplane.dynamics.tracking import Branches, follow, interpolated
+from spaceplane.dynamics.tracking import Branches
 from spaceplane.dynamics.trim.longitudinal import PitchTrim, schedule_at, trim_elevator
 from spaceplane.dynamics.trim.maps import trim_map
 from spaceplane.errors import InputError, unknown_name
@@ -108,7 +109,7 @@ class Descent:
         settings: how it is flown.
         trim_map: over Mach number and angle of attack, see `dynamics.trim.maps.trim_map`.
         points: by Mach number.
-        branches: modes followed along the Mach number; None where fewer than two neighbours have a linear model.
+        tracked: modes followed along the Mach number.
     """
 
     model: AeroModel
@@ -116,7 +117,12 @@ class Descent:
     settings: DescentSettings
     trim_map: xr.Dataset
     points: tuple[DescentPoint, ...]
-    branches: Branches | None = field(default=None)
+    tracked: Tracked
+
+    @property
+    def branches(self) -> Branches | None:
+        """Modes along the Mach number; None where no two neighbours can be joined."""
+        return self.tracked.branches
 
 
 def descend(
@@ -149,7 +155,7 @@ def descend(
     for number, point in enumerate(points):
         say("flight dynamics", number, len(points), point.name)
         flown.append(_at(model, mass, point, settings))
-    return Descent(model, mass, settings, found, tuple(flown), _followed(flown))
+    return Descent(model, mass, settings, found, tuple(flown), track(points, [one.system for one in flown]))
 
 
 def _at(model: AeroModel, mass: MassProperties, point: FlightPoint, settings: DescentSettings) -> DescentPoint:
@@ -186,18 +192,3 @@ def _check_errors(errors: Mapping[str, GivenError], model: AeroModel) -> None:
             raise InputError(f"uncertainty {unknown_name('derivative of this model', name, known)}")
         if error.relative and name in unknown:
             raise InputError(f"uncertainty {name}: the model takes it as zero; give its half width, not a share")
-
-
-def _followed(points: Sequence[DescentPoint]) -> Branches | None:
-    """Modes along the Mach number through the longest run of neighbours that have a linear model."""
-    runs: list[list[DescentPoint]] = [[]]
-    for one in points:
-        if one.system is None:
-            runs.append([])
-        else:
-            runs[-1].append(one)
-    longest = max(runs, key=len)
-    if len(longest) < 2:
-        return None
-    grid = [one.point.mach for one in longest]
-    return follow(interpolated(grid, [one.system for one in longest]), grid, "mach")

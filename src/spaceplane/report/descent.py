@@ -14,6 +14,7 @@ from spaceplane.files import json_text, renamed_when_done, told, write_text
 from spaceplane.plain import finite
 from spaceplane.qualities.verdict import Verdict
 from spaceplane.report import descent_likelihood
+from spaceplane.report.branches import event_record
 from spaceplane.report.figures_dynamics import over_parameter, phasors, root_locus
 from spaceplane.report.plain_page import Table, document, picture_html, table_html
 from spaceplane.report.read import level_text
@@ -62,16 +63,8 @@ def record(descent: Descent) -> dict:
         "category": settings.category,
         "uncertainty": descent_likelihood.given_record(settings.uncertainty),
         "points": [_point_record(one) for one in descent.points],
-        "events": [
-            {
-                "kind": event.kind,
-                "mach": event.parameter,
-                "branches": list(event.branches),
-                "before": list(event.before),
-                "after": list(event.after),
-            }
-            for event in (descent.branches.events if descent.branches else ())
-        ],
+        "events": [event_record(event) for event in (descent.branches.events if descent.branches else ())],
+        "not_followed": list(descent.tracked.reasons),
     }
 
 
@@ -129,6 +122,7 @@ def page(descent: Descent, drawn: dict[str, bytes]) -> str:
     return document(title, parts)
 
 
+EVENTS = "Events along the descent"
 _BELOW = {
     "Trim": [("trim-map", "Trim over Mach number and angle of attack")],
     "Modes": [
@@ -183,15 +177,17 @@ def _modes(descent: Descent) -> Table:
 
 
 def _events(descent: Descent) -> list[Table]:
+    gaps = "; ".join(descent.tracked.reasons)
     if descent.branches is None:
-        return []
+        return [Table(EVENTS, 3, f"The modes are not followed: {gaps}.", (), ())]
     rows = [
         (f"{e.parameter:.2f}", e.kind, " and ".join(e.branches), " and ".join(e.before), " and ".join(e.after))
         for e in descent.branches.events
         if e.kind != "name"
     ]
-    note = "Where eigenvalues meet, part or turn from decay to growth; between flight points A and B are linear."
-    return [Table("Events along the descent", 3, note, ("Mach", "event", "branches", "before", "after"), tuple(rows))]
+    note = "Where eigenvalues meet, part or turn from decay to growth; between flight points A is linear."
+    note += f" Not followed farther: {gaps}." if gaps else ""
+    return [Table(EVENTS, 3, note, ("Mach", "event", "branches", "before", "after"), tuple(rows))]
 
 
 def _levels(descent: Descent) -> Table:

@@ -14,6 +14,7 @@ from rich.table import Table
 from rich.text import Text
 
 from spaceplane.qualities.probability import per_cent
+from spaceplane.report.card import yaw_sentence
 from spaceplane.report.flight_point import LEVEL_CSS, level_of, time_text, worst_levels
 from spaceplane.report.likelihood import outcome_chip
 from spaceplane.report.names import stability
@@ -65,6 +66,9 @@ def print_summary(result: dict, report: Path | None = None, console: Console | N
     points = result["flight_points"]
     console.print(Text(result["vehicle"]["name"], style="bold"), highlight=False)
     console.print(_points_table(points))
+    for p in points:
+        if yaw_sentence(p):
+            console.print(f"{p['name']}: {yaw_sentence(p)}", highlight=False, soft_wrap=True)
     for p in points:
         if p.get("modes"):
             console.print(_modes_table(f"modes at {p['name']}", p["modes"]))
