@@ -58,7 +58,9 @@ def system(bank_deg: float | None = None, **changes: float) -> StateSpace:
 
 def derivatives(**changes: float) -> Derivatives:
     """Table 6.1 with the elevator and with changes, per rad."""
-    controls = elevator_slopes() | {name: value for name, value in changes.items() if not hasattr(CASE.derivatives, name)}
+    controls = elevator_slopes() | {
+        name: value for name, value in changes.items() if not hasattr(CASE.derivatives, name)
+    }
     plain = {name: value for name, value in changes.items() if hasattr(CASE.derivatives, name)}
     return replace(CASE.derivatives, controls=controls, **plain)
 

@@ -38,6 +38,7 @@ MAP_STEP = math.radians(1.0)
 """Step of the trim map in angle of attack, rad."""
 SAMPLES = 1000
 """Draws of uncertain derivatives at each flight point: probabilities within 0.03."""
+MOST_SAMPLES = 1_000_000
 
 
 @dataclass(frozen=True)
@@ -55,7 +56,8 @@ class DescentSettings:
         samples: draws at each flight point.
 
     Raises:
-        InputError: Mach numbers that do not increase, or an unknown form, class or category.
+        InputError: Mach numbers that do not increase or lie outside the descent of the thesis, an angle or number of
+            draws out of range, or an unknown form, class or category.
     """
 
     machs: Sequence[float] = MACHS
@@ -75,6 +77,17 @@ class DescentSettings:
         if self.form not in FORMS:
             raise InputError(f"form = {self.form!r}: must be one of {', '.join(FORMS)}")
         limits.check(self.vehicle_class, self.category)
+        if not 1 <= self.samples <= MOST_SAMPLES:
+            raise InputError(f"samples = {self.samples}: must be a whole number from 1 to {MOST_SAMPLES}")
+        self.flight_points()
+
+    def flight_points(self) -> list[FlightPoint]:
+        """One for each Mach number, without coefficients.
+
+        Raises:
+            InputError: a Mach number outside the descent of the thesis, or an angle out of range.
+        """
+        return [taem_point(m, gamma_deg=self.gamma_deg, bank_deg=self.bank_deg) for m in self.machs]
 
 
 @dataclass(frozen=True)
@@ -139,13 +152,12 @@ def descend(
         progress: called with (phase, done, total, text).
 
     Raises:
-        InputError: a Mach number outside the descent of the thesis, a model without elevons, or an error of a
-            derivative that the model does not know.
+        InputError: a model without elevons, or an error of a derivative that the model does not know.
     """
     settings = settings or DescentSettings()
     _check_errors(settings.uncertainty, model)
     say = progress or silent
-    points = [taem_point(m, gamma_deg=settings.gamma_deg, bank_deg=settings.bank_deg) for m in settings.machs]
+    points = settings.flight_points()
     say("trim map", 0, 1, "")
     within = [m for m in settings.machs if model.mach[0] <= m <= model.mach[-1]]
     machs = np.unique(np.concatenate([model.mach, within]))
