@@ -57,15 +57,17 @@ def inertial_rates(
     against_air = velocity - carried - air_velocity(air, planet, position)
     given = controls_at(controls, time, lambda: from_inertial(values, planet, time))
     fall = gravity(planet, position)
+    to_axes = attitude.matrix(values[6:10])
+    omega = values[10:13]
+    relative = _against_planet(omega, to_axes, planet)
 
     def other() -> np.ndarray:
         """Acceleration against the air without that of the aerodynamic force, m/s2."""
         return fall - turned - air_acceleration(air, planet, position, velocity)
 
-    acting = _acting(values, against_air, values[10:13], other, vehicle, planet, given, air)
-    specific = _specific_force(values, against_air, acting, vehicle)
-    turning = angular_acceleration(vehicle, values[10:13], acting.moment)
-    return np.concatenate([velocity, specific + fall, attitude.rate(values[6:10], values[10:13]), turning])
+    acting, specific = _acting(position, to_axes, against_air, relative, omega, other, vehicle, planet, given, air)
+    turning = angular_acceleration(vehicle, omega, acting.moment)
+    return np.concatenate([velocity, specific + fall, attitude.rate(values[6:10], omega), turning])
 
 
 def fixed_rates(
@@ -81,11 +83,9 @@ def fixed_rates(
     Raises:
         InputError: outside of the air or of the aerodynamics known.
     """
-    acting, against_air, fall = _fixed_loads(time, values, vehicle, planet, controls, air)
-    specific = _specific_force(values, against_air, acting, vehicle)
+    acting, acceleration, relative = _fixed(time, values, vehicle, planet, controls, air)
     turning = angular_acceleration(vehicle, values[10:13], acting.moment)
-    swing = attitude.rate(values[6:10], _against_planet(values, planet))
-    return np.concatenate([values[3:6], specific + fall, swing, turning])
+    return np.concatenate([values[3:6], acceleration, attitude.rate(values[6:10], relative), turning])
 
 
 def fixed_loads(
@@ -101,65 +101,64 @@ def fixed_loads(
     Raises:
         InputError: outside of the air or of the aerodynamics known.
     """
-    return _fixed_loads(time, values, vehicle, planet, controls, air)[0]
+    return _fixed(time, values, vehicle, planet, controls, air)[0]
 
 
-def _fixed_loads(
+def _fixed(
     time: float, values: np.ndarray, vehicle: Vehicle, planet: Planet, controls: Controls, air: Air
 ) -> tuple[Loads, np.ndarray, np.ndarray]:
-    """(loads, velocity against the air, acceleration by gravity and rotation), planet-fixed axes."""
+    """(loads, d velocity/dt in planet-fixed axes, body rates against the planet)."""
     position, velocity = values[:3], values[3:6]
     spin = planet.rotation
     (x, y, _), (u, v, _) = position, velocity
     fall = gravity(planet, position) + np.array([2 * spin * v + spin**2 * x, -2 * spin * u + spin**2 * y, 0.0])
     against_air = velocity - air_velocity(air, planet, position)
     given = controls_at(controls, time, lambda: from_fixed(values))
-    turning = _against_planet(values, planet)
+    to_axes = attitude.matrix(values[6:10])
+    relative = _against_planet(values[10:13], to_axes, planet)
 
     def other() -> np.ndarray:
         """Acceleration against the air without that of the aerodynamic force, m/s2."""
         return fall - air_acceleration(air, planet, position, velocity)
 
-    return _acting(values, against_air, turning, other, vehicle, planet, given, air), against_air, fall
+    acting, specific = _acting(position, to_axes, against_air, relative, relative, other, vehicle, planet, given, air)
+    return acting, specific + fall, relative
 
 
-def _against_planet(values: np.ndarray, planet: Planet) -> np.ndarray:
+def _against_planet(omega: np.ndarray, to_axes: np.ndarray, planet: Planet) -> np.ndarray:
     """Body rates against the planet; z is its axis in both sets of axes, so its rate has the same components."""
-    return values[10:13] - planet.rotation * attitude.matrix(values[6:10])[2]
+    return omega - planet.rotation * to_axes[2]
 
 
 def _acting(
-    values: np.ndarray,
+    position: np.ndarray,
+    to_axes: np.ndarray,
     against_air: np.ndarray,
+    relative: np.ndarray,
     turning: np.ndarray,
     other: Callable[[], np.ndarray],
     vehicle: Vehicle,
     planet: Planet,
     controls: Mapping[str, float],
     air: Air,
-) -> Loads:
-    """Loads; `turning` are the body rates against the axes of the position, `other` all other accelerations."""
-    relative = _against_planet(values, planet)
+) -> tuple[Loads, np.ndarray]:
+    """(loads, aerodynamic force per mass in the axes of the position).
+
+    `relative` are the body rates against the planet, `turning` those against the axes of the position, and `other`
+    gives all other accelerations against the air.
+    """
     if vehicle.aerodynamics is None:
-        return loads(vehicle, air, 0.0, 0.0, 0.0, 0.0, relative, controls)
-    x, y, z = (float(c) for c in values[:3])
+        return loads(vehicle, air, 0.0, 0.0, 0.0, 0.0, relative, controls), np.zeros(3)
+    x, y, z = (float(c) for c in position)
     altitude = geodetic_meridian(planet, math.hypot(x, y), z)[0]
-    to_body = attitude.matrix(values[6:10]).T
-    body = to_body @ against_air
+    body = to_axes.T @ against_air
     V, alpha, beta = frames.air_angles(body)
     acting = loads(vehicle, air, altitude, V, alpha, beta, relative, controls)
-    if not any(acting.lag):
-        return acting
-    change = to_body @ (_specific_force(values, against_air, acting, vehicle) + other()) - np.cross(turning, body)
-    rate = (body[0] * change[2] - body[2] * change[0]) / (body[0] ** 2 + body[2] ** 2)
-    return with_lag(acting, vehicle, V, beta, rate)
-
-
-def _specific_force(values: np.ndarray, against_air: np.ndarray, acting: Loads, vehicle: Vehicle) -> np.ndarray:
-    """[3] aerodynamic force per mass, m/s2, in the axes of the position."""
-    if vehicle.aerodynamics is None:
-        return np.zeros(3)
-    to_axes = attitude.matrix(values[6:10])
-    _, alpha, beta = frames.air_angles(to_axes.T @ against_air)
-    force = frames.wind_to_body(alpha, beta) @ np.array([-acting.drag, acting.side, -acting.lift])
-    return to_axes @ force / vehicle.mass
+    from_wind = frames.wind_to_body(alpha, beta) / vehicle.mass
+    specific = from_wind @ np.array([-acting.drag, acting.side, -acting.lift])
+    if any(acting.lag):
+        change = specific + to_axes.T @ other() - np.cross(turning, body)
+        rate = (body[0] * change[2] - body[2] * change[0]) / (body[0] ** 2 + body[2] ** 2)
+        acting = with_lag(acting, vehicle, V, beta, float(rate))
+        specific = from_wind @ np.array([-acting.drag, acting.side, -acting.lift])
+    return acting, to_axes @ specific
