@@ -3,13 +3,17 @@
 import tomllib
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+from spaceplane.analysis.descent import DescentSettings, descend
+from spaceplane.decks.source import read_source
 from spaceplane.dynamics import derivatives_file
-from spaceplane.dynamics.given_errors import GivenError, half_widths, read_errors
+from spaceplane.dynamics.given_errors import GivenError, by_surface, half_widths, read_errors
 from spaceplane.dynamics.sensitivity import PARAMETERS
 from spaceplane.errors import InputError
 from spaceplane.qualities.modes_record import analyse_modes
+from spaceplane.qualities.probability import NORMAL_95, Uncertainty
 
 from . import horus
 
@@ -62,6 +66,33 @@ def test_what_is_no_error_is_named(text, match):
 def test_a_control_that_the_vehicle_lacks_is_refused():
     with pytest.raises(InputError, match="has no Cm_rudder"):
         half_widths({"Cm_rudder": GivenError(0.1)}, horus.point(), horus.derivatives())
+
+
+def test_errors_of_combined_controls_are_those_of_their_surfaces():
+    """An aileron's error, drawn through its two elevons, is the aileron's again; so is its correlation."""
+    errors, pairs = by_surface({"Cl_aileron": 0.02, "Cn_beta": 0.01}, {("Cl_aileron", "Cn_beta"): 0.5})
+    assert errors["Cl_elevon_left"] == errors["Cl_elevon_right"] == GivenError(0.01)
+    widths = {name: one.amount for name, one in errors.items()}
+    uncertainty = Uncertainty(widths, pairs | {("Cl_elevon_left", "Cl_elevon_right"): -1.0})
+    draws = dict(zip(uncertainty.names, uncertainty.draw(4000, 0).T, strict=True))
+    aileron = draws["Cl_elevon_left"] - draws["Cl_elevon_right"]
+    assert aileron.std() == pytest.approx(0.02 / NORMAL_95, rel=0.04)
+    assert np.corrcoef(aileron, draws["Cn_beta"])[0, 1] == pytest.approx(0.5, abs=0.04)
+
+
+def test_a_descent_takes_the_errors_of_a_derivatives_file(tmp_path):
+    text = EXAMPLE.read_text(encoding="utf-8")
+    text = text.replace("Cm_M = 0.01195", "Cm_M = 0.01195\nCm_elevator = -0.001\nCL_elevator = 0.002")
+    path = tmp_path / "case.toml"
+    path.write_text(text + '\n[uncertainty]\nCm_alpha = "50%"\nCm_elevator = 0.0002\n', encoding="utf-8")
+    source = read_source(str(path))
+    settings = DescentSettings((2.5,), uncertainty=source.errors, correlation=source.correlation, samples=50)
+    one = descend(source.model, source.mass, settings).points[0]
+    widths = one.likelihood.uncertainty.half_width
+    per_rad = 57.29577951308232
+    assert widths["Cm_alpha"] == pytest.approx(0.5 * 0.00071 * per_rad)
+    assert widths["Cm_elevon_left"] == widths["Cm_elevon_right"] == pytest.approx(0.0001 * per_rad)
+    assert one.likelihood.uncertainty.correlation["Cm_elevon_left", "Cm_elevon_right"] == 1.0
 
 
 def content(**table):

@@ -53,6 +53,7 @@ class DescentSettings:
         form: of the linear model, see `dynamics.linearise.FORMS`.
         vehicle_class, category: of MIL-F-8785C.
         uncertainty: errors of derivatives, C_L and C_D, for probabilities of levels; empty for none.
+        correlation: pairs of uncertain names to coefficient of correlation, -1 to 1.
         samples: draws at each flight point.
 
     Raises:
@@ -68,6 +69,7 @@ class DescentSettings:
     vehicle_class: str = "III"
     category: str = "B"
     uncertainty: Mapping[str, GivenError] = field(default_factory=dict)
+    correlation: Mapping[tuple[str, str], float] = field(default_factory=dict)
     samples: int = SAMPLES
 
     def __post_init__(self) -> None:
@@ -189,7 +191,7 @@ def _at(model: AeroModel, mass: MassProperties, point: FlightPoint, settings: De
     airframe = Airframe(point, mass, model.reference, derivatives, 0.0, trim.elevator)
     assessed = assess_all(airframe, settings.vehicle_class, settings.category, settings.form)
     judged = (settings.vehicle_class, settings.category, settings.form)
-    certain = likelihood(airframe, assessed, settings.uncertainty, *judged, settings.samples)
+    certain = likelihood(airframe, assessed, settings.uncertainty, *judged, settings.samples, settings.correlation)
     return DescentPoint(point, trim, assessed.system, assessed.modes, assessed.verdicts, likelihood=certain)
 
 

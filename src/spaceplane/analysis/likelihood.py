@@ -44,6 +44,7 @@ def likelihood(
     category: str,
     form: str,
     samples: int,
+    correlation: Mapping[tuple[str, str], float] | None = None,
 ) -> Likelihood:
     """Sensitivities and, with errors, probabilities and scatter about the nominal flight point.
 
@@ -56,6 +57,7 @@ def likelihood(
         vehicle_class, category: of MIL-F-8785C.
         form: of the linear model.
         samples: number of draws.
+        correlation: of the errors as stated; those of mirror images are one error in any case.
 
     Raises:
         InputError: an error of a derivative that the vehicle does not have, or a number of draws out of range.
@@ -65,7 +67,8 @@ def likelihood(
     widths = half_widths(errors, a.point, a.derivatives)
     if not any(widths.values()):
         return Likelihood(found)
-    uncertainty = Uncertainty(widths, mirror_correlation(a.derivatives, widths))
+    stated = {pair: value for pair, value in (correlation or {}).items() if set(pair) <= set(widths)}
+    uncertainty = Uncertainty(widths, stated | mirror_correlation(a.derivatives, widths))
     cloud = eigenvalue_cloud(a, uncertainty, min(samples, CLOUD), form=form)
     return Likelihood(
         found,

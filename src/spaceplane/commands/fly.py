@@ -52,7 +52,7 @@ def fly(
             "--uncertainty",
             metavar="NAME=ERROR[,...]",
             help="Half widths of 95 % intervals of derivatives (per rad), CL and CD: Cm_alpha=10%,Cn_beta=0.01 or "
-            "all=10%. Levels then come with probabilities.",
+            "all=10%. Levels then come with probabilities. A derivatives file's own are the default.",
         ),
     ] = None,
     samples: Annotated[
@@ -72,8 +72,6 @@ def fly(
     given |= {} if machs is None else {"machs": tuple(machs)}
     given |= {} if body_flap is None else {"body_flap": math.radians(number("--body-flap", body_flap, "deg"))}
     if samples is not None:
-        if uncertainty is None:
-            raise InputError("--samples: goes with --uncertainty")
         given["samples"] = count("--samples", samples, "draws")
     writable_file(json_file, "--json")
     from spaceplane.analysis.descent import DescentSettings, descend
@@ -85,8 +83,12 @@ def fly(
         given["uncertainty"] = read_errors("--uncertainty", uncertainty)
     if source == PUBLISHED:
         given.setdefault("body_flap", HORUS_2B_BODY_FLAP)
-    settings = DescentSettings(**given)
     found = read_source(source, vehicle)
+    if uncertainty is None:
+        given |= {"uncertainty": found.errors, "correlation": found.correlation}
+    if samples is not None and not given["uncertainty"]:
+        raise InputError("--samples: goes with --uncertainty")
+    settings = DescentSettings(**given)
     if found.mass is None:
         raise InputError("--vehicle: needed, for the mass that the tables do not give")
     folder = writable_folder(out, "--out")

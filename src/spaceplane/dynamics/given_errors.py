@@ -10,7 +10,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from spaceplane.aero.model.derivatives import CONTROL_DERIVATIVES, Derivatives
+from spaceplane.aero.model.derivatives import CONTROL_DERIVATIVES, PAIRS, Derivatives
 from spaceplane.dynamics.flightpoint import FlightPoint
 from spaceplane.dynamics.sensitivity import PARAMETERS, value_of
 from spaceplane.errors import InputError, unknown_name
@@ -107,3 +107,31 @@ def half_widths(
         for name in wanted
     }
     return {name: width for name, width in widths.items() if width > 0.0 or name in errors}
+
+
+def by_surface(
+    widths: Mapping[str, float], correlation: Mapping[tuple[str, str], float]
+) -> tuple[dict[str, GivenError], dict[tuple[str, str], float]]:
+    """Errors and correlations with those of elevator, aileron and rudder shared out between their two surfaces.
+
+    Args:
+        widths: name to half width, per rad, per unit Mach number or reduced rate.
+        correlation: pair of names to coefficient of correlation, -1 to 1.
+    """
+    errors = {part: GivenError(abs(share) * width) for name, width in widths.items() for part, share in _parts(name)}
+    pairs = {
+        (a, b): math.copysign(1.0, sign * other) * value
+        for (one, two), value in correlation.items()
+        for a, sign in _parts(one)
+        for b, other in _parts(two)
+    }
+    return errors, pairs
+
+
+def _parts(name: str) -> tuple[tuple[str, float], ...]:
+    """A derivative with a combined control as those with its surfaces and their shares; any other is itself."""
+    coefficient, _, control = name.partition("_")
+    if control not in PAIRS:
+        return ((name, 1.0),)
+    first, second, sign = PAIRS[control]
+    return ((f"{coefficient}_{first}", 0.5), (f"{coefficient}_{second}", 0.5 * sign))
