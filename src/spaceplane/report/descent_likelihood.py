@@ -153,12 +153,12 @@ def _shown(row: Mapping[tuple[str, str], Outlook], key: tuple[str, str]) -> bool
 
 
 def _likely_cell(outlook: Outlook | None) -> str:
-    """Such as `level 2 with 87 %`."""
+    """Such as `level 2 with 87 %`; the outcome alone where there is no other."""
     if outlook is None or set(outlook.probabilities) == {"not applicable"}:
         return NEVER
     name, share = max(outlook.probabilities.items(), key=lambda item: item[1])
     text = f"level {name}" if name in "123" else name.replace("not applicable", "n/a")
-    return f"{text} with {per_cent(share)}"
+    return text if share == 1.0 else f"{text} with {per_cent(share)}"
 
 
 def print_levels(descent: Descent) -> None:
