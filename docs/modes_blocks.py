@@ -15,6 +15,7 @@ import numpy as np
 import xarray as xr
 
 from spaceplane.aero.model.derivatives import Derivatives
+from spaceplane.aero.model.published import horus_2b_published
 from spaceplane.control.authority import Authority, authority
 from spaceplane.control.closed_loop import close
 from spaceplane.control.disturbance import Gust, disturbed, gust_column
@@ -35,12 +36,18 @@ from spaceplane.qualities.assess import load_factor_slope
 DOCS = Path(__file__).resolve().parent
 IMAGES = DOCS / "images" / "modes"
 CASE = derivatives_file.read(DOCS.parent / "examples" / "horus_2b_taem.toml")
-# Both elevons, per rad: twice the published increments of one at Mach 2.5 and 16.6 deg between -10 and 0 deg.
-ELEVATOR = {"CL_elevator": 0.0724, "CD_elevator": 0.0495, "Cm_elevator": -0.0253}
 TRIM = {"elevon_left": math.radians(-3.0), "elevon_right": math.radians(-3.0)}
 THRUSTER = 1e4  # N m: a round number; those of HORUS-2B are not published
 GUST = 10.0  # m/s
 UNITS = {"rad": ("deg", 180 / math.pi), "rad/s": ("deg/s", 180 / math.pi)}
+
+
+@cache
+def elevator_slopes() -> dict[str, float]:
+    """CL, CD and Cm with both elevons, per rad: slopes of the published increments at the trim."""
+    model = horus_2b_published()
+    found = model.derivatives(CASE.point.mach, CASE.point.alpha, TRIM)
+    return {f"{name}_elevator": found.control(name, "elevator") for name in ("CL", "CD", "Cm")}
 
 
 def system(bank_deg: float | None = None, **changes: float) -> StateSpace:
@@ -51,7 +58,9 @@ def system(bank_deg: float | None = None, **changes: float) -> StateSpace:
 
 def derivatives(**changes: float) -> Derivatives:
     """Table 6.1 with the elevator and with changes, per rad."""
-    controls = ELEVATOR | {name: value for name, value in changes.items() if not hasattr(CASE.derivatives, name)}
+    controls = elevator_slopes() | {
+        name: value for name, value in changes.items() if not hasattr(CASE.derivatives, name)
+    }
     plain = {name: value for name, value in changes.items() if hasattr(CASE.derivatives, name)}
     return replace(CASE.derivatives, controls=controls, **plain)
 

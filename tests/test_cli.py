@@ -17,8 +17,13 @@ from spaceplane import __version__, cli
 from spaceplane.commands.arguments import fraction, spread_assignments
 from spaceplane.errors import InputError
 
-COMMANDS = ("analyse", "geometry", "flow", "modes", "compare", "report", "validate", "export", "study sensitivity")
+COMMANDS = (
+    *("analyse", "geometry", "flow", "fly", "modes", "compare", "report", "validate", "export"),
+    "study sensitivity",
+)
 FLOW = ["--area", "1", "--length", "1", "--span", "1", "--moment-center", "0,0,0"]
+PUBLISHED = "horus-2b-published"
+HEAD = "alpha_deg,M2,M3\n"
 
 
 def run(capfd: pytest.CaptureFixture, *arguments: object) -> tuple[int, str, str]:
@@ -468,6 +473,130 @@ def test_missing_result(capfd, tmp_path):
 
 def test_unknown_export_format(capfd, tmp_path):
     refused(capfd, "export", "xlsx", tmp_path, naming="xlsx")
+    refused(capfd, "export", "jsbsm", PUBLISHED, "--out", tmp_path / "o", naming="jsbsim")
+    assert not (tmp_path / "o").exists()
+
+
+# What `fly` and `export` refuse of an aerodynamic model.
+
+
+def table_set(folder: Path, **texts: str) -> Path:
+    """The smallest folder of tables, with some files as given."""
+    folder.mkdir()
+    files = {f"{c}0": HEAD + f"0,{v},{v}\n20,{2 * v},{2 * v}\n" for c, v in (("CL", 0.2), ("CD", 0.1), ("Cm", 0.01))}
+    for name, text in (files | texts).items():
+        (folder / f"{name}.csv").write_text(text)
+    return folder
+
+
+@pytest.mark.parametrize(
+    ("options", "naming"),
+    [
+        (["--mach", "3,2"], "mach = 3, 2"),
+        (["--mach", "2,2"], "--mach: 2 is given twice"),
+        (["--mach", ""], "--mach"),
+        (["--mach", "nan"], "--mach"),
+        (["--mach", "-2"], "--mach"),
+        (["--mach", "0.5"], "mach = 0.5"),
+        (["--mach", "2,30"], "mach = 30"),
+        (["--form", "x"], "form = 'x'"),
+        (["--class", "V"], "vehicle_class = 'V'"),
+        (["--category", "D"], "category = 'D'"),
+        (["--gamma", "nan"], "--gamma"),
+        (["--gamma", "95"], "gamma_deg = 95"),
+        (["--bank", "down"], "--bank"),
+        (["--bank", "200"], "bank_deg = 200"),
+        (["--body-flap", "inf"], "--body-flap"),
+        (["--vehicle", "nope"], "unknown vehicle preset 'nope'"),
+        (["--vehicle", "none.yaml"], "none.yaml"),
+        (["--samples", "10"], "--samples: goes with --uncertainty"),
+        (["--samples", "0", "--uncertainty", "all=10%"], "--samples"),
+        (["--samples", "2M", "--uncertainty", "all=10%"], "samples = 2000000"),
+        (["--uncertainty", ""], "--uncertainty"),
+        (["--uncertainty", "Cm_alpha"], "--uncertainty"),
+        (["--uncertainty", "Cm_alpa=10%"], "did you mean 'Cm_alpha'"),
+        (["--uncertainty", "Cm_alpha=nan"], "Cm_alpha = 'nan'"),
+        (["--uncertainty", "Cm_alpha=-5%"], "Cm_alpha = '-5%'"),
+        (["--uncertainty", "all=0.1"], "must be a share"),
+    ],
+)
+def test_bad_descents(capfd, tmp_path, options, naming):
+    refused(capfd, "fly", PUBLISHED, *options, "--out", tmp_path / "o", naming=naming)
+    assert not (tmp_path / "o").exists()
+
+
+@pytest.mark.parametrize(
+    ("options", "naming"),
+    [
+        (["--body-flap", "90"], "body_flap = 90 deg"),
+        (["--uncertainty", "Cl_p=10%"], "Cl_p"),
+        (["--uncertainty", "Cm_elevator=10%"], "Cm_elevator"),
+    ],
+)
+def test_descents_that_the_tables_refuse(capfd, tmp_path, options, naming):
+    refused(capfd, "fly", PUBLISHED, "--mach", "2", *options, "--out", tmp_path / "o", naming=naming)
+
+
+@pytest.mark.parametrize("command", [["fly"], ["export", "tudat"], ["export", "jsbsim"]], ids=" ".join)
+def test_sources_that_are_none(capfd, tmp_path, command):
+    out = tmp_path / "o"
+    refused(capfd, *command, "horus-2b-publish", "--out", out, naming="did you mean 'horus-2b-published'")
+    refused(capfd, *command, tmp_path, "--out", out, naming=str(tmp_path))
+    refused(capfd, *command, tmp_path / "none.nc", "--out", out, naming="none.nc")
+    refused(capfd, *command, tmp_path / "none.toml", "--out", out, naming="none.toml")
+    (tmp_path / "bad.nc").write_text("no")
+    refused(capfd, *command, tmp_path / "bad.nc", "--out", out, naming="bad.nc")
+    refused(capfd, *command, table_set(tmp_path / "t"), "--out", out, naming="--vehicle: needed")
+    assert not out.exists()
+
+
+@pytest.mark.parametrize(
+    ("file", "text", "naming"),
+    [
+        ("CL0", HEAD + "0,nan,1\n20,1,1\n", "CL0.csv, row 2: M2 = nan: must be finite"),
+        ("CD0", HEAD + "0,much,1\n20,1,1\n", "CD0.csv, row 2: M2 = 'much'"),
+        ("Cm0", HEAD + "0,1\n20,1,1\n", "Cm0.csv, row 2"),
+        ("Cm0", "alpha,M2\n0,1\n", "Cm0.csv: columns"),
+        ("CL0", "alpha_deg,M3,M2\n0,1,1\n20,1,1\n", "mach"),
+        ("dCm_one_elevn", HEAD, "dCm_one_elevon"),
+    ],
+)
+@pytest.mark.parametrize("command", [["fly"], ["export", "csv"]], ids=" ".join)
+def test_damaged_tables(capfd, tmp_path, command, file, text, naming):
+    tables = table_set(tmp_path / "tables", **{file: text})
+    refused(capfd, *command, tables, "--vehicle", "horus-2b", "--out", tmp_path / "o", naming=naming)
+
+
+@pytest.mark.parametrize(
+    "command", [["fly"], ["export", "tudat"], ["export", "jsbsim"], ["export", "csv"]], ids=" ".join
+)
+def test_models_are_not_written_where_nothing_can_be(capfd, blocked, command):
+    refused(capfd, *command, PUBLISHED, "--out", blocked, naming="--out")
+    refused(capfd, *command, PUBLISHED, "--out", "", naming="--out")
+    good = blocked.parent.with_name("o")
+    refused(capfd, *command, PUBLISHED, "--out", good, "--json", blocked / "r.json", naming="--json")
+    assert blocked.parent.read_text() == "kept"
+
+
+@pytest.mark.parametrize("text", ["nan,0,0", "1,2", "a,b,c", ""])
+def test_bad_centres_of_mass(capfd, tmp_path, text):
+    options = ["--center-of-mass", text, "--out", tmp_path / "o"]
+    refused(capfd, "export", "jsbsim", PUBLISHED, *options, naming="--center-of-mass")
+    assert not (tmp_path / "o").exists()
+
+
+def test_a_descent_says_how_likely_its_levels_are(capfd, tmp_path):
+    """The command from end to end: files, terminal, exit code 0; without any trim exit code 1 and the reason."""
+    options = ["--mach", "2,2.5", "--uncertainty", "all=20%", "--samples", "60", "--out", tmp_path / "o"]
+    code, out, _ = run(capfd, "fly", PUBLISHED, *options)
+    assert code == 0
+    assert "2 of 2 flight points trimmed" in out and " with " in out and "descent.html" in out
+    record = json.loads((tmp_path / "o" / "descent.json").read_text())
+    assert record["uncertainty"] == {"all": {"share": 0.2}}
+    assert all(v["samples"] == 60 for p in record["points"] for v in p["verdicts"])
+    code, out, err = run(capfd, "fly", PUBLISHED, "--mach", "1.2", "--out", tmp_path / "none")
+    assert code == 1
+    assert "0 of 1 flight points trimmed" in out and "Mach 1.2: no trim" in err
 
 
 def test_compare_needs_two(capfd, tmp_path):

@@ -82,6 +82,13 @@ def test_result_holds_the_whole_chain(written):
     assert (result["schema"], result["schema_version"]) == ("spaceplane.result", 1)
     assert [p["name"] for p in result["flight_points"]] == ["Mach 1.5", "Mach 2.5"]
     assert result["vehicle"]["deflections_deg"]["body_flap"] == pytest.approx(-20.0)
+    along = result["mode_branches"]
+    assert along["flight_points"] == ["Mach 1.5", "Mach 2.5"] and along["reasons"] == []
+    for k, point in zip((0, -1), result["flight_points"], strict=True):
+        own = sorted(np.linalg.eigvals(point["A"]), key=lambda z: (round(z.real, 6), z.imag))
+        row = sorted((complex(*z) for z in along["eigenvalues"][k]), key=lambda z: (round(z.real, 6), z.imag))
+        assert np.allclose(row, own, rtol=1e-6, atol=1e-8)
+    assert "The modes followed through Mach 1.5, Mach 2.5" in paths["report.html"].read_text(encoding="utf-8")
     for point in result["flight_points"]:
         assert point["alpha_source"]
         assert np.shape(point["A"]) == (9, 9)

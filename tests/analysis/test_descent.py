@@ -4,16 +4,25 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.stats import norm
 
 from spaceplane.aero.model.published import horus_2b_published
 from spaceplane.analysis.descent import DescentSettings, descend
+from spaceplane.dynamics.given_errors import read_errors
+from spaceplane.dynamics.linearise import linearise
+from spaceplane.dynamics.modes import identify
+from spaceplane.dynamics.sensitivity import drivers
 from spaceplane.dynamics.trim.longitudinal import HORUS_2B_BODY_FLAP
 from spaceplane.errors import InputError
+from spaceplane.qualities.departure import dynamic_directional
+from spaceplane.qualities.probability import NORMAL_95
 from spaceplane.report import descent as report
+from spaceplane.report import descent_likelihood
 from spaceplane.vehicle.presets import horus_2b
 
 MASS = horus_2b().mass
@@ -21,7 +30,9 @@ MASS = horus_2b().mass
 
 @pytest.fixture(scope="module")
 def descent():
-    return descend(horus_2b_published(), MASS, DescentSettings((1.5, 2.0, 2.5, 10.0), body_flap=HORUS_2B_BODY_FLAP))
+    return descend(
+        horus_2b_published(), MASS, DescentSettings((1.5, 2.0, 2.5, 5.0, 10.0), body_flap=HORUS_2B_BODY_FLAP)
+    )
 
 
 def test_the_trim_at_the_taem_interface(descent):
@@ -76,13 +87,90 @@ def test_a_flap_held_elsewhere_moves_the_elevator_the_other_way():
 def test_the_page_and_the_record_are_written_whole(descent, tmp_path):
     paths = report.write(descent, tmp_path)
     record = json.loads(paths["json"].read_text())
-    assert [point["mach"] for point in record["points"]] == [1.5, 2.0, 2.5, 10.0]
+    assert [point["mach"] for point in record["points"]] == [1.5, 2.0, 2.5, 5.0, 10.0]
     page = paths["html"].read_text()
     for text in ("Trim", "Modes", "Events along the descent", "Levels of MIL-F-8785C", "data:image/png"):
         assert text in page
     assert ">nan<" not in page
     for name in ("trim-map", "root-locus", "modes-by-mach", "eigenvectors"):
         assert paths[name].read_bytes()[:4] == b"\x89PNG"
+
+
+@pytest.fixture(scope="module")
+def uncertain():
+    """C_n_beta so uncertain that the sign of C_n_beta,dyn is open, C_l_beta exact, the rest by shares."""
+    errors = read_errors("--uncertainty", "Cn_beta=0.4,Cm_alpha=30%,CL=5%")
+    settings = DescentSettings((2.0, 2.5), body_flap=HORUS_2B_BODY_FLAP, uncertainty=errors, samples=400)
+    return descend(horus_2b_published(), MASS, settings)
+
+
+def test_probabilities_along_a_descent_are_those_of_the_normal_distribution(uncertain):
+    """C_n_beta,dyn is linear in C_n_beta: the chance that it is positive is known in closed form."""
+    for one in uncertain.points:
+        derivatives = horus_2b_published().derivatives(
+            one.point.mach,
+            one.point.alpha,
+            {"elevon_left": one.trim.elevator, "elevon_right": one.trim.elevator, "body_flap": one.trim.body_flap},
+        )
+        value = dynamic_directional(derivatives, MASS, one.point.alpha)
+        sigma = math.cos(one.point.alpha) * 0.4 / NORMAL_95
+        outlook = next(
+            o for o in one.likelihood.outlooks if o.verdict.criterion.endswith("dynamic directional stability")
+        )
+        assert outlook.verdict.met == (value > 0.0)
+        assert outlook.probabilities["met"] == pytest.approx(norm.cdf(value / sigma), abs=1.5 * outlook.error)
+        assert outlook.probabilities["met"] < 0.95
+
+
+def test_what_drives_a_mode_moves_it(uncertain):
+    """The pitch divergence by C_m_alpha: its first-order change by one per cent against that of the model itself."""
+    one = uncertain.points[1]
+    k = next(k for k, mode in enumerate(one.modes) if mode.eigenvalue.real > 0.5)
+    driver = drivers(one.likelihood.sensitivities[k])[0]
+    assert driver.parameter == "Cm_alpha" and driver.share > 0.9
+    model = horus_2b_published()
+    deflections = {"elevon_left": one.trim.elevator, "elevon_right": one.trim.elevator, "body_flap": one.trim.body_flap}
+    derivatives = model.derivatives(2.5, one.point.alpha, deflections)
+    moved = replace(derivatives, Cm_alpha=1.01 * derivatives.Cm_alpha)
+    changed = identify(linearise(one.point, MASS, model.reference, moved))
+    nearest = min((m.eigenvalue for m in changed), key=lambda z: abs(z - one.modes[k].eigenvalue))
+    assert nearest - one.modes[k].eigenvalue == pytest.approx(driver.per_percent, rel=0.02)
+
+
+def test_the_page_says_how_likely_levels_are(uncertain, descent, tmp_path, capsys):
+    paths = report.write(uncertain, tmp_path)
+    page, record = paths["html"].read_text(), json.loads(paths["json"].read_text())
+    for text in ("How likely the levels are", "How far eigenvalues scatter", "What drives each mode", "Cm_alpha 30 %"):
+        assert text in page
+    assert re.search(r"(level \d|below 3|met) with \d+ %", page)
+    assert paths["eigenvalue-scatter"].read_bytes()[:4] == b"\x89PNG"
+    assert record["uncertainty"]["Cn_beta"] == {"half_width": 0.4}
+    point = record["points"][1]
+    mode = next(m for m in point["modes"] if m["eigenvalue"][0] > 0.5)
+    assert mode["eigenvalue_error"][0] == pytest.approx(NORMAL_95 * mode["scatter"]["real"], rel=0.25)
+    assert mode["drivers"][0]["parameter"] == "Cm_alpha"
+    assert sum(point["verdicts"][0]["probabilities"].values()) == pytest.approx(1.0)
+    descent_likelihood.print_levels(uncertain)
+    assert re.search(r"Mach 2(\.5)?: .* with \d+ %", capsys.readouterr().out)
+    plain = report.page(descent, {})
+    assert "What drives each mode" in plain and "How likely" not in plain
+    descent_likelihood.print_levels(descent)
+    assert capsys.readouterr().out == ""
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("Cm_elevator=10%", "Cm_elevon"),
+        ("Cm_rudder_left=0.1", "Cm_rudder_left"),
+        ("Cl_p=10%", "Cl_p: the model takes it as zero"),
+        ("Cm_alphadot=10%", "Cm_alphadot"),
+    ],
+)
+def test_errors_of_what_the_model_does_not_know(text, message):
+    settings = DescentSettings((2.5,), uncertainty=read_errors("--uncertainty", text))
+    with pytest.raises(InputError, match=message):
+        descend(horus_2b_published(), MASS, settings)
 
 
 @pytest.mark.parametrize(

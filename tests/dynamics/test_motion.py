@@ -458,8 +458,6 @@ def test_bad_vehicles_and_states():
         from_trajectory({"V": 100.0, "gamma": 0, "R": 7e6, "alpha": 0, "sigma": 0, "lat": 2.0})
     with pytest.raises(InputError, match="rates"):
         FlightState([7e6, 0, 0], [0, 0, 0], [1, 0, 0, 0], [0, math.nan, 0])
-    with pytest.raises(InputError, match="Cm_alphadot"):
-        glider(Cm_alphadot=-1.0)
 
 
 def test_linear_aerodynamics_refuse_to_extrapolate():

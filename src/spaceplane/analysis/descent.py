@@ -9,20 +9,25 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from spaceplane.aero.model.derivatives import PAIRS
 from spaceplane.aero.model.model import AeroModel, OutsideTables
+from spaceplane.analysis.likelihood import Likelihood, likelihood
+from spaceplane.analysis.tracked import Tracked, track
 from spaceplane.dynamics.flightpoint import TAEM_BANK_DEG, TAEM_GAMMA_DEG, FlightPoint, taem_point
+from spaceplane.dynamics.given_errors import GivenError
 from spaceplane.dynamics.linearise import FORMS
 from spaceplane.dynamics.modes import Mode
 from spaceplane.dynamics.statespace import StateSpace
-from spaceplane.dynamics.tracking import Branches, follow, interpolated
+from spaceplane.dynamics.tracking import Branches
 from spaceplane.dynamics.trim.longitudinal import PitchTrim, schedule_at, trim_elevator
 from spaceplane.dynamics.trim.maps import trim_map
-from spaceplane.errors import InputError
+from spaceplane.errors import InputError, unknown_name
 from spaceplane.progress import Progress, silent
 from spaceplane.qualities import limits
 from spaceplane.qualities.airframe import Airframe
 from spaceplane.qualities.probability import assess_all
 from spaceplane.qualities.verdict import Verdict
+from spaceplane.vehicle.controls import CONTROLS
 from spaceplane.vehicle.properties import MassProperties
 
 if TYPE_CHECKING:
@@ -31,6 +36,9 @@ if TYPE_CHECKING:
 MACHS = (1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 7.5, 10.0, 12.5, 15.0, 17.5, 20.0)
 MAP_STEP = math.radians(1.0)
 """Step of the trim map in angle of attack, rad."""
+SAMPLES = 1000
+"""Draws of uncertain derivatives at each flight point: probabilities within 0.03."""
+MOST_SAMPLES = 1_000_000
 
 
 @dataclass(frozen=True)
@@ -44,9 +52,13 @@ class DescentSettings:
             chooses the one that leaves the elevator the largest margin.
         form: of the linear model, see `dynamics.linearise.FORMS`.
         vehicle_class, category: of MIL-F-8785C.
+        uncertainty: errors of derivatives, C_L and C_D, for probabilities of levels; empty for none.
+        correlation: pairs of uncertain names to coefficient of correlation, -1 to 1.
+        samples: draws at each flight point.
 
     Raises:
-        InputError: Mach numbers that do not increase, or an unknown form, class or category.
+        InputError: Mach numbers that do not increase or lie outside the descent of the thesis, an angle or number of
+            draws out of range, or an unknown form, class or category.
     """
 
     machs: Sequence[float] = MACHS
@@ -56,6 +68,9 @@ class DescentSettings:
     form: str = FORMS[0]
     vehicle_class: str = "III"
     category: str = "B"
+    uncertainty: Mapping[str, GivenError] = field(default_factory=dict)
+    correlation: Mapping[tuple[str, str], float] = field(default_factory=dict)
+    samples: int = SAMPLES
 
     def __post_init__(self) -> None:
         machs = np.asarray(self.machs, dtype=float)
@@ -64,6 +79,17 @@ class DescentSettings:
         if self.form not in FORMS:
             raise InputError(f"form = {self.form!r}: must be one of {', '.join(FORMS)}")
         limits.check(self.vehicle_class, self.category)
+        if not 1 <= self.samples <= MOST_SAMPLES:
+            raise InputError(f"samples = {self.samples}: must be a whole number from 1 to {MOST_SAMPLES}")
+        self.flight_points()
+
+    def flight_points(self) -> list[FlightPoint]:
+        """One for each Mach number, without coefficients.
+
+        Raises:
+            InputError: a Mach number outside the descent of the thesis, or an angle out of range.
+        """
+        return [taem_point(m, gamma_deg=self.gamma_deg, bank_deg=self.bank_deg) for m in self.machs]
 
 
 @dataclass(frozen=True)
@@ -76,6 +102,7 @@ class DescentPoint:
         system: linear model about the trim; None without.
         modes, verdicts: of it.
         reason: why there is no trim or no linear model; empty where there is.
+        likelihood: what moves the modes and how certain they are; None without a linear model.
     """
 
     point: FlightPoint
@@ -84,6 +111,7 @@ class DescentPoint:
     modes: tuple[Mode, ...] = ()
     verdicts: tuple[Verdict, ...] = ()
     reason: str = ""
+    likelihood: Likelihood | None = None
 
 
 @dataclass(frozen=True)
@@ -96,7 +124,7 @@ class Descent:
         settings: how it is flown.
         trim_map: over Mach number and angle of attack, see `dynamics.trim.maps.trim_map`.
         points: by Mach number.
-        branches: modes followed along the Mach number; None where fewer than two neighbours have a linear model.
+        tracked: modes followed along the Mach number.
     """
 
     model: AeroModel
@@ -104,7 +132,12 @@ class Descent:
     settings: DescentSettings
     trim_map: xr.Dataset
     points: tuple[DescentPoint, ...]
-    branches: Branches | None = field(default=None)
+    tracked: Tracked
+
+    @property
+    def branches(self) -> Branches | None:
+        """Modes along the Mach number; None where no two neighbours can be joined."""
+        return self.tracked.branches
 
 
 def descend(
@@ -121,11 +154,12 @@ def descend(
         progress: called with (phase, done, total, text).
 
     Raises:
-        InputError: a Mach number outside the descent of the thesis, or a model without elevons.
+        InputError: a model without elevons, or an error of a derivative that the model does not know.
     """
     settings = settings or DescentSettings()
+    _check_errors(settings.uncertainty, model)
     say = progress or silent
-    points = [taem_point(m, gamma_deg=settings.gamma_deg, bank_deg=settings.bank_deg) for m in settings.machs]
+    points = settings.flight_points()
     say("trim map", 0, 1, "")
     within = [m for m in settings.machs if model.mach[0] <= m <= model.mach[-1]]
     machs = np.unique(np.concatenate([model.mach, within]))
@@ -135,7 +169,7 @@ def descend(
     for number, point in enumerate(points):
         say("flight dynamics", number, len(points), point.name)
         flown.append(_at(model, mass, point, settings))
-    return Descent(model, mass, settings, found, tuple(flown), _followed(flown))
+    return Descent(model, mass, settings, found, tuple(flown), track(points, [one.system for one in flown]))
 
 
 def _at(model: AeroModel, mass: MassProperties, point: FlightPoint, settings: DescentSettings) -> DescentPoint:
@@ -156,19 +190,19 @@ def _at(model: AeroModel, mass: MassProperties, point: FlightPoint, settings: De
         return DescentPoint(point, trim, reason=f"outside the tables: {error}")
     airframe = Airframe(point, mass, model.reference, derivatives, 0.0, trim.elevator)
     assessed = assess_all(airframe, settings.vehicle_class, settings.category, settings.form)
-    return DescentPoint(point, trim, assessed.system, assessed.modes, assessed.verdicts)
+    judged = (settings.vehicle_class, settings.category, settings.form)
+    certain = likelihood(airframe, assessed, settings.uncertainty, *judged, settings.samples, settings.correlation)
+    return DescentPoint(point, trim, assessed.system, assessed.modes, assessed.verdicts, likelihood=certain)
 
 
-def _followed(points: Sequence[DescentPoint]) -> Branches | None:
-    """Modes along the Mach number through the longest run of neighbours that have a linear model."""
-    runs: list[list[DescentPoint]] = [[]]
-    for one in points:
-        if one.system is None:
-            runs.append([])
-        else:
-            runs[-1].append(one)
-    longest = max(runs, key=len)
-    if len(longest) < 2:
-        return None
-    grid = [one.point.mach for one in longest]
-    return follow(interpolated(grid, [one.system for one in longest]), grid, "mach")
+def _check_errors(errors: Mapping[str, GivenError], model: AeroModel) -> None:
+    """Refuse errors that cannot act, before anything is computed: a misspelt one must not pass for certain."""
+    lag = ("CL_alphadot", "Cm_alphadot")
+    unknown = (*model.unknown(), *lag)
+    for name, error in errors.items():
+        surface = name.split("_", 1)[-1]
+        if surface in PAIRS or (surface in CONTROLS and name in unknown):
+            known = [f"{c}_{s}" for s, table in model.surfaces.items() for c in table.increments]
+            raise InputError(f"uncertainty {unknown_name('derivative of this model', name, known)}")
+        if error.relative and name in unknown:
+            raise InputError(f"uncertainty {name}: the model takes it as zero; give its half width, not a share")

@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from spaceplane.commands import options, sources
-from spaceplane.commands.arguments import mach_numbers, number, numbers, writable_file, write_json
+from spaceplane.commands.arguments import count, mach_numbers, number, numbers, writable_file, write_json
 from spaceplane.commands.progress import progress_bar
 from spaceplane.errors import InputError
 from spaceplane.files import writable_folder
@@ -57,6 +57,18 @@ def fly(
             help="Metres aft of the nose, to the right, up; the moment centre of the model by default.",
         ),
     ] = None,
+    uncertainty: Annotated[
+        str | None,
+        typer.Option(
+            "--uncertainty",
+            metavar="NAME=ERROR[,...]",
+            help="Half widths of 95 % intervals of derivatives (per rad), CL and CD: Cm_alpha=10%,Cn_beta=0.01 or "
+            "all=10%. Levels then come with probabilities. A derivatives file's own are the default.",
+        ),
+    ] = None,
+    samples: Annotated[
+        str | None, typer.Option("--samples", metavar="N", help="Draws for them at each flight point; 1000 by default.")
+    ] = None,
     out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder to write into.")] = Path("out/fly"),
     json_file: options.JsonFile = None,
 ) -> int:
@@ -71,17 +83,26 @@ def fly(
     given |= {} if machs is None else {"machs": tuple(machs)}
     given |= {} if body_flap is None else {"body_flap": math.radians(number("--body-flap", body_flap, "deg"))}
     center = None if center_of_mass is None else numbers("--center-of-mass", center_of_mass, "m", 3)
+    if samples is not None:
+        given["samples"] = count("--samples", samples, "draws")
     writable_file(json_file, "--json")
     from spaceplane.analysis.descent import DescentSettings, descend
     from spaceplane.decks.source import PUBLISHED
+    from spaceplane.dynamics.given_errors import read_errors
     from spaceplane.dynamics.trim.longitudinal import HORUS_2B_BODY_FLAP
 
+    if uncertainty is not None:
+        given["uncertainty"] = read_errors("--uncertainty", uncertainty)
     if source == PUBLISHED:
         given.setdefault("body_flap", HORUS_2B_BODY_FLAP)
     found = sources.read(source, vehicle, point)
     if machs is None and sources.is_analysis(source):
         # The middle of the model's range is the one Mach number that it is made about.
         given["machs"] = (round(float(found.model.mach.mean()), 9),)
+    if uncertainty is None:
+        given |= {"uncertainty": found.errors, "correlation": found.correlation}
+    if samples is not None and not given["uncertainty"]:
+        raise InputError("--samples: goes with --uncertainty")
     settings = DescentSettings(**given)
     if found.mass is None:
         raise InputError("--vehicle: needed, for the mass that the tables do not give")
@@ -90,6 +111,7 @@ def fly(
     with progress_bar() as tell:
         descent = descend(model, found.mass, settings, tell)
     from spaceplane.report import descent as report
+    from spaceplane.report import descent_likelihood
 
     files = report.write(descent, folder)
     write_json(report.record(descent), json_file)
@@ -98,6 +120,7 @@ def fly(
         for one in descent.points:
             if one.trim is None:
                 typer.echo(f"Mach {one.point.mach:g}: no trim: {one.reason}", err=True)
+        descent_likelihood.print_levels(descent)
         typer.echo(f"{len(trimmed)} of {len(descent.points)} flight points trimmed")
         typer.echo(f"report: {files['html']}")
     return 0 if trimmed else 1

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from spaceplane.aero.model import netcdf
@@ -11,6 +12,7 @@ from spaceplane.aero.model.published import horus_2b_published
 from spaceplane.aero.model.table_set import read_table_set
 from spaceplane.decks import folder
 from spaceplane.dynamics import derivatives_file
+from spaceplane.dynamics.given_errors import GivenError, by_surface
 from spaceplane.errors import InputError, unknown_name
 from spaceplane.vehicle import presets
 from spaceplane.vehicle.properties import MassProperties
@@ -27,10 +29,14 @@ class Source:
     Attributes:
         model: tables.
         mass: kg, kg m2; None if the source does not say and no vehicle was named.
+        errors: of derivatives, as the source states them; only a derivatives file does.
+        correlation: of these errors, pairs of names to coefficient.
     """
 
     model: AeroModel
     mass: MassProperties | None
+    errors: Mapping[str, GivenError] = field(default_factory=dict)
+    correlation: Mapping[tuple[str, str], float] = field(default_factory=dict)
 
 
 def is_model(source: str) -> bool:
@@ -76,7 +82,8 @@ def read_source(source: str, vehicle: str | None = None) -> Source:
         if vehicle is not None:
             raise InputError(f"--vehicle: {source} has its own vehicle")
         case = derivatives_file.read(source)
-        return Source(derivatives_file.aero_model(case, Path(source).stem), case.mass)
+        stated = by_surface(case.uncertainty, case.correlation)
+        return Source(derivatives_file.aero_model(case, Path(source).stem), case.mass, *stated)
     named = presets.load(vehicle) if vehicle else None
     if source == PUBLISHED:
         return Source(horus_2b_published(), (named or presets.horus_2b()).mass)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import tomllib
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -17,9 +17,12 @@ from spaceplane.aero.model.derivatives import (
     from_mapping,
     per_radian,
 )
+from spaceplane.dynamics import toml_tables
 from spaceplane.dynamics.flightpoint import FlightPoint, flight_point
+from spaceplane.dynamics.given_errors import given_error, half_widths
 from spaceplane.dynamics.linearise import FORMS
-from spaceplane.errors import InputError, unknown_name
+from spaceplane.dynamics.sensitivity import AT_POINT, PARAMETERS, value_of
+from spaceplane.errors import InputError
 from spaceplane.vehicle.properties import MassProperties, ReferenceLengths
 
 if TYPE_CHECKING:
@@ -102,25 +105,26 @@ def from_tables(content: Mapping[str, object]) -> ModesCase:
     Raises:
         InputError: an unknown or missing table or key, or a value that is no finite number or out of its limits.
     """
-    _known("", content, ("flight", "vehicle", "derivatives", "model", "uncertainty", "airframe"))
-    flight = _numbers(content, "flight", FLIGHT_REQUIRED, FLIGHT_OPTIONAL)
-    vehicle = _numbers(content, "vehicle", VEHICLE_REQUIRED, ())
+    toml_tables.known("", content, ("flight", "vehicle", "derivatives", "model", "uncertainty", "airframe"))
+    flight = toml_tables.numbers(content, "flight", FLIGHT_REQUIRED, FLIGHT_OPTIONAL)
+    vehicle = toml_tables.numbers(content, "vehicle", VEHICLE_REQUIRED, ())
     for name, value in vehicle.items():
         if value <= 0:
             raise InputError(f"[vehicle] {name} = {value:g}: must be above 0")
     form, density_gradient, gyroscopic, vehicle_class, category = _model(content)
+    point, derivatives = flight_point(**flight), _derivatives(content)
     return ModesCase(
-        point=flight_point(**flight),
+        point=point,
         mass=MassProperties(*(vehicle[key] for key in VEHICLE_REQUIRED[:4])),
         reference=ReferenceLengths(vehicle["area_m2"], vehicle["c_ref_m"], vehicle["b_ref_m"], (0.0, 0.0, 0.0)),
-        derivatives=_derivatives(content),
+        derivatives=derivatives,
         form=form,
         density_gradient=density_gradient,
         gyroscopic=gyroscopic,
         vehicle_class=vehicle_class,
         category=category,
-        given={key: dict(_table(content, key)) for key in content},
-        **_uncertainty(content),
+        given={key: dict(toml_tables.table(content, key)) for key in content},
+        **_uncertainty(content, point, derivatives),
         airframe=_airframe(content),
     )
 
@@ -142,20 +146,20 @@ def aero_model(case: ModesCase, name: str = "derivatives file") -> AeroModel:
 
 
 def _derivatives(content: Mapping[str, object]) -> Derivatives:
-    table = _table(content, "derivatives")
+    table = toml_tables.table(content, "derivatives")
     if "unit" not in table:
         raise InputError('[derivatives] unit: missing; give "per_degree" or "per_radian"')
     if table["unit"] not in UNITS:
         raise InputError(f"[derivatives] unit = {table['unit']!r}: must be one of {', '.join(UNITS)}")
-    values = _numbers(content, "derivatives", STATIC, (*DAMPING, *CONTROL_DERIVATIVES), ignore=("unit",))
+    values = toml_tables.numbers(content, "derivatives", STATIC, (*DAMPING, *CONTROL_DERIVATIVES), ignore=("unit",))
     return from_mapping(per_radian(values) if table["unit"] == "per_degree" else values)
 
 
 def _airframe(content: Mapping[str, object]) -> dict[str, object]:
     if "airframe" not in content:
         return {}
-    table = _table(content, "airframe")
-    numbers = _numbers(content, "airframe", (), AIRFRAME_NUMBERS, ignore=AIRFRAME_KEYS)
+    table = toml_tables.table(content, "airframe")
+    numbers = toml_tables.numbers(content, "airframe", (), AIRFRAME_NUMBERS, ignore=AIRFRAME_KEYS)
     found: dict[str, object] = {}
     if "Cm" in numbers:
         found["pitching_moment"] = numbers["Cm"]
@@ -176,22 +180,23 @@ def _airframe(content: Mapping[str, object]) -> dict[str, object]:
     return found
 
 
-def _uncertainty(content: Mapping[str, object]) -> dict:
-    """Half widths in the unit of `[derivatives]`, C_L and C_D among them; correlations, samples and seed."""
+def _uncertainty(content: Mapping[str, object], point: FlightPoint, derivatives: Derivatives) -> dict:
+    """Half widths in the unit of `[derivatives]` or as shares, C_L and C_D among them; correlations, samples, seed."""
     if "uncertainty" not in content:
         return {}
-    table = _table(content, "uncertainty")
-    names = (*STATIC, *DAMPING, *CONTROL_DERIVATIVES, "CL", "CD")
-    plain = _numbers(content, "uncertainty", (), names, ignore=UNCERTAINTY_KEYS)
-    for name, value in plain.items():
-        if value < 0:
-            raise InputError(f"[uncertainty] {name} = {value:g}: must be 0 or above, the half width of a 95 % interval")
-        given = _table(content, "derivatives")
-        if name in CONTROL_DERIVATIVES and name not in given:
-            raise InputError(f"[uncertainty] {name}: [derivatives] has no {name}")
-    coefficients = {name: plain.pop(name) for name in ("CL", "CD") if name in plain}
-    per_degree = _table(content, "derivatives").get("unit") == "per_degree"
-    widths = {**(per_radian(plain) if per_degree else plain), **coefficients}
+    table = toml_tables.table(content, "uncertainty")
+    errors = {}
+    per_degree = toml_tables.table(content, "derivatives")["unit"] == "per_degree"
+    for name, value in table.items():
+        if name in UNCERTAINTY_KEYS:
+            continue
+        one = given_error("[uncertainty]", name, value)
+        if not one.relative and name not in AT_POINT and per_degree:
+            one = replace(one, amount=per_radian({name: one.amount})[name])
+        if one.relative and one.amount and name in PARAMETERS and not value_of(name, point, derivatives):
+            raise InputError(f"[uncertainty] {name} = {value!r}: a share of nothing, since {name} is 0")
+        errors[name] = one
+    widths = half_widths(errors, point, derivatives, "[uncertainty]")
     whole = {}
     for key, default, least in (("samples", SAMPLES, 1), ("seed", 0, 0)):
         value = table.get(key, default)
@@ -218,8 +223,8 @@ def _correlation(table: Mapping[str, object], widths: Mapping[str, float]) -> di
 
 
 def _model(content: Mapping[str, object]) -> tuple[str, bool, bool, str, str]:
-    table = _table(content, "model") if "model" in content else {}
-    _known("model", table, MODEL_KEYS)
+    table = toml_tables.table(content, "model") if "model" in content else {}
+    toml_tables.known("model", table, MODEL_KEYS)
     form = table.get("form", FORMS[0])
     if form not in FORMS:
         raise InputError(f"[model] form = {form!r}: must be one of {', '.join(FORMS)}")
@@ -236,45 +241,6 @@ def _model(content: Mapping[str, object]) -> tuple[str, bool, bool, str, str]:
             raise InputError(f"[model] {key} = {value!r}: must be a text, such as {default!r}")
         texts.append(value)
     return str(form), switches[0], switches[1], texts[0], texts[1]
-
-
-def _table(content: Mapping[str, object], name: str) -> Mapping[str, object]:
-    table = content.get(name)
-    if table is None:
-        raise InputError(f"[{name}]: the table is missing")
-    if not isinstance(table, Mapping):
-        raise InputError(f"{name} = {table!r}: must be a table [{name}]")
-    return table
-
-
-def _numbers(
-    content: Mapping[str, object],
-    name: str,
-    required: tuple[str, ...],
-    optional: tuple[str, ...],
-    ignore: tuple[str, ...] = (),
-) -> dict[str, float]:
-    """The finite numbers of a table."""
-    table = _table(content, name)
-    _known(name, table, (*required, *optional, *ignore))
-    missing = [key for key in required if key not in table]
-    if missing:
-        raise InputError(f"[{name}] {', '.join(missing)}: missing")
-    numbers = {}
-    for key, value in table.items():
-        if key in ignore:
-            continue
-        if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
-            raise InputError(f"[{name}] {key} = {value!r}: must be a finite number")
-        numbers[key] = float(value)
-    return numbers
-
-
-def _known(table: str, content: Mapping[str, object], allowed: tuple[str, ...]) -> None:
-    for key in content:
-        if key not in allowed:
-            message = unknown_name("key" if table else "table", key, allowed)
-            raise InputError(f"[{table}] {message}" if table else message)
 
 
 def _one_line(error: Exception) -> str:

@@ -177,7 +177,8 @@ def simulate(
         events: what to look for, and whether to stop there; a quantity that meets its value twice within one step is
             not seen, so `max_step` bounds the steps.
         form: of `FORMS`.
-        air: the air by altitude, m.
+        air: the air by altitude, m; a `motion.wind.MovingAir` for one that blows (body forms only). The velocity of
+            `start` and of the states that a law sees is that against the planet.
         output_step: between the times of the history, s; the last time is always there.
         breaks: times at which a control law jumps, s; the integration starts anew there.
         rtol: relative tolerance, a fraction of each coordinate; the absolute one is this times a typical size.
@@ -319,7 +320,7 @@ def _met(
         # A quantity that starts on its value has met it before; one that ends on it meets it now.
         if not (low * high < 0 or (low != 0 and high == 0)) or event.direction * (high - low) < 0:
             continue
-        if event.quantity in ("chi", "lon", "sigma", "psi", "phi", "alpha") and abs(high - low) > math.pi:
+        if event.quantity in ("chi", "lon", "sigma", "psi", "phi", "alpha", "track") and abs(high - low) > math.pi:
             continue  # the jump from pi to -pi
 
         def miss(time: float, event: Event = event) -> float:

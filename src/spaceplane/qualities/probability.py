@@ -43,8 +43,7 @@ class Uncertainty:
 
     Attributes:
         half_width: name to half width of the 95 % interval, in the derivative's unit (per rad, per unit Mach number).
-        Names
-            are those of `Derivatives`, its control derivatives, CL and CD.
+            Names are those of `Derivatives`, its control derivatives, CL and CD.
         correlation: pair of names to coefficient of correlation, -1 to 1; pairs left out are independent.
 
     Raises:

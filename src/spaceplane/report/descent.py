@@ -9,11 +9,12 @@ from pathlib import Path
 
 from spaceplane import __version__
 from spaceplane.analysis.descent import Descent, DescentPoint
-from spaceplane.dynamics.modes import Mode, to_record
+from spaceplane.dynamics.modes import Mode
 from spaceplane.files import json_text, renamed_when_done, told, write_text
 from spaceplane.plain import finite
 from spaceplane.qualities.verdict import Verdict
-from spaceplane.qualities.verdict import to_record as verdict_record
+from spaceplane.report import descent_likelihood
+from spaceplane.report.branches import event_record
 from spaceplane.report.figures_dynamics import over_parameter, phasors, root_locus
 from spaceplane.report.plain_page import Table, document, picture_html, table_html
 from spaceplane.report.read import level_text
@@ -60,17 +61,10 @@ def record(descent: Descent) -> dict:
         "form": settings.form,
         "class": settings.vehicle_class,
         "category": settings.category,
+        "uncertainty": descent_likelihood.given_record(settings.uncertainty),
         "points": [_point_record(one) for one in descent.points],
-        "events": [
-            {
-                "kind": event.kind,
-                "mach": event.parameter,
-                "branches": list(event.branches),
-                "before": list(event.before),
-                "after": list(event.after),
-            }
-            for event in (descent.branches.events if descent.branches else ())
-        ],
+        "events": [event_record(event) for event in (descent.branches.events if descent.branches else ())],
+        "not_followed": list(descent.tracked.reasons),
     }
 
 
@@ -93,8 +87,7 @@ def _point_record(one: DescentPoint) -> dict:
             "static_margin": finite(trim.static.margin),
             "Cm_alpha": finite(trim.static.Cm_alpha),
         },
-        "modes": [to_record(mode) for mode in one.modes],
-        "verdicts": [verdict_record(verdict) for verdict in one.verdicts],
+        **descent_likelihood.point_record(one),
     }
 
 
@@ -109,7 +102,7 @@ def pictures(descent: Descent) -> dict[str, bytes]:
     flown = [one for one in descent.points if one.modes]
     if flown:
         drawn["eigenvectors"] = phasors(flown[0].modes, flown[0].point.velocity)
-    return drawn
+    return drawn | descent_likelihood.pictures(descent)
 
 
 def page(descent: Descent, drawn: dict[str, bytes]) -> str:
@@ -129,6 +122,7 @@ def page(descent: Descent, drawn: dict[str, bytes]) -> str:
     return document(title, parts)
 
 
+EVENTS = "Events along the descent"
 _BELOW = {
     "Trim": [("trim-map", "Trim over Mach number and angle of attack")],
     "Modes": [
@@ -136,12 +130,14 @@ _BELOW = {
         ("root-locus", "Root locus along the descent"),
         ("eigenvectors", "Eigenvectors at the slowest flight point"),
     ],
+    **descent_likelihood.BELOW,
 }
 
 
 def tables(descent: Descent) -> list[Table]:
     """Trim, modes and levels by Mach number."""
-    return [_trims(descent), _modes(descent), *_events(descent), _levels(descent)]
+    likely = descent_likelihood.tables(descent)
+    return [_trims(descent), _modes(descent), *_events(descent), _levels(descent), *likely]
 
 
 def _trims(descent: Descent) -> Table:
@@ -181,15 +177,17 @@ def _modes(descent: Descent) -> Table:
 
 
 def _events(descent: Descent) -> list[Table]:
+    gaps = "; ".join(descent.tracked.reasons)
     if descent.branches is None:
-        return []
+        return [Table(EVENTS, 3, f"The modes are not followed: {gaps}.", (), ())]
     rows = [
         (f"{e.parameter:.2f}", e.kind, " and ".join(e.branches), " and ".join(e.before), " and ".join(e.after))
         for e in descent.branches.events
         if e.kind != "name"
     ]
-    note = "Where eigenvalues meet, part or turn from decay to growth; between flight points A and B are linear."
-    return [Table("Events along the descent", 3, note, ("Mach", "event", "branches", "before", "after"), tuple(rows))]
+    note = "Where eigenvalues meet, part or turn from decay to growth; between flight points A is linear."
+    note += f" Not followed farther: {gaps}." if gaps else ""
+    return [Table(EVENTS, 3, note, ("Mach", "event", "branches", "before", "after"), tuple(rows))]
 
 
 def _levels(descent: Descent) -> Table:

@@ -41,7 +41,7 @@ def root_locus(branches: Branches, windows: Sequence[Window] = (), label: str = 
             everything by default.
         label: of the parameter's scale; its name and unit by default.
     """
-    return _png(lambda: _root_locus(branches, windows, label))
+    return png(lambda: _root_locus(branches, windows, label))
 
 
 def over_parameter(branches: Branches, label: str = "", window: tuple[float, float] | None = None) -> bytes:
@@ -52,7 +52,7 @@ def over_parameter(branches: Branches, label: str = "", window: tuple[float, flo
         label: of the parameter's axis.
         window: least and greatest real part, 1/s.
     """
-    return _png(lambda: _over_parameter(branches, label, window))
+    return png(lambda: _over_parameter(branches, label, window))
 
 
 def phasors(modes: Sequence[Mode], speed: float) -> bytes:
@@ -68,7 +68,7 @@ def phasors(modes: Sequence[Mode], speed: float) -> bytes:
     """
     if not modes:
         raise InputError("modes: none to show")
-    return _png(lambda: _phasors(modes, speed))
+    return png(lambda: _phasors(modes, speed))
 
 
 def responses(
@@ -87,10 +87,11 @@ def responses(
     for name in variables:
         if name not in known:
             raise InputError(unknown_name("variable", name, sorted(known)))
-    return _png(lambda: _responses(histories, variables, limits or {}))
+    return png(lambda: _responses(histories, variables, limits or {}))
 
 
-def _png(draw: Callable[[], Figure]) -> bytes:
+def png(draw: Callable[[], Figure]) -> bytes:
+    """A figure in the style of these pictures, drawn, as a PNG."""
     import matplotlib
 
     matplotlib.use("Agg")

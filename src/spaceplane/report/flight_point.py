@@ -6,6 +6,7 @@ from markupsafe import Markup
 
 from spaceplane.aero.axes import FORCES_AND_MOMENTS
 from spaceplane.report import likelihood
+from spaceplane.report.card import absence, yaw_sentence
 from spaceplane.report.names import GREEK, STATES, greek, split_derivative, stability, symbol, words
 from spaceplane.report.numbers import MINUS, MISSING, Measured, duration, fixed, grouped, is_number, measured, number
 from spaceplane.report.plots import convergence_plot, derivative_bars, eigenvalue_planes, eigenvalue_text, phase_clock
@@ -32,6 +33,8 @@ def point(p: dict) -> dict:
         f"{fixed(p.get('velocity_ms'), 0)} m/s",
         "figures": _figures(p),
         "level_chips": _level_chips(verdicts),
+        "absent": _absent(verdicts),
+        "yaw": Markup(yaw_sentence(p, symbol("Cn_beta")).replace(" ± ", "&nbsp;±&nbsp;")),
         **_validity(p),
         "alpha_source": p.get("alpha_source") or "",
         **_parts(p),
@@ -99,10 +102,25 @@ def _level_chips(verdicts: list[dict]) -> list[dict]:
     chips = []
     for name, v in worst_levels(verdicts).items():
         level = level_of(v)
-        text = f"{name}: {'n/a' if level is None else level_text(level)}{likelihood.certainty(v)}"
+        if level is None:
+            continue
+        text = f"{name}: {level_text(level)}{likelihood.certainty(v)}"
         title = v.get("note") or f"{v['mode']}: {v.get('quantity') or v.get('criterion') or ''}"
         chips.append({"css": level_css(level), "text": text, "title": title})
     return chips
+
+
+def _absent(verdicts: list[dict]) -> list[dict]:
+    """Criteria that do not apply, each with a short reason, and the whole note to point at."""
+    none = {name: v for name, v in worst_levels(verdicts).items() if level_of(v) is None}
+    for v in verdicts:  # of several quantities the one that says what moves instead
+        name = criterion_name(v.get("criterion") or v["mode"])
+        if name in none and " Instead " in (v.get("note") or ""):
+            none[name] = v
+    return [
+        {"name": name, "reason": absence(v), "title": f"{v.get('paragraph') or ''} {v.get('note') or ''}".strip()}
+        for name, v in none.items()
+    ]
 
 
 def _validity(p: dict) -> dict:

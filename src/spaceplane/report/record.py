@@ -19,9 +19,11 @@ from spaceplane.aero.uncertainty.grid import LEVEL, ORDER, SAFETY, SAFETY_SUPERS
 from spaceplane.aero.uncertainty.settings import ITERATION, MESH
 from spaceplane.analysis.flight import PointAnalysis
 from spaceplane.analysis.found import Analysis
+from spaceplane.analysis.tracked import track
 from spaceplane.flow.solution import ConvergenceRecord
 from spaceplane.plain import degrees, plain
 from spaceplane.qualities.outlook_record import mode_records, verdict_records
+from spaceplane.report import branches
 from spaceplane.report.read import SCHEMA, SCHEMA_VERSION
 from spaceplane.vehicle.controls import ControlDeflections
 from spaceplane.vehicle.presets import Vehicle
@@ -47,9 +49,16 @@ def result(analysis: Analysis) -> dict:
             "uncertainty": uncertainty(analysis),
             "accuracy": accuracy(analysis),
             "flight_points": [flight_point(analysis, index) for index in range(len(analysis.points))],
+            "mode_branches": mode_branches(analysis),
             "warnings": list(analysis.warnings),
         }
     )
+
+
+def mode_branches(analysis: Analysis) -> dict:
+    """Modes followed through the flight points along the Mach number."""
+    points = [found.point for found in analysis.points]
+    return branches.record(track(points, [found.system for found in analysis.points]), [p.name for p in points])
 
 
 def vehicle(subject: Vehicle, deflections: ControlDeflections, surface: Surface) -> dict:

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import base64
 import json
 
 from markupsafe import Markup
 
 from spaceplane import __version__
+from spaceplane.report import branches
+from spaceplane.report.figures_dynamics import over_parameter
 from spaceplane.report.flight_point import level_css, point
 from spaceplane.report.names import COEFFICIENTS, SOURCES, meaning, split_derivative, stability, symbol, words
 from spaceplane.report.numbers import Measured, duration, fixed, grouped, is_number, measured, number, unbroken
@@ -59,12 +62,27 @@ def whole(result: dict) -> dict:
         "derivative_groups": _derivative_groups(points),
         "point_colours": POINT_COLOURS,
         "together": Markup(eigenvalues_together(points)),
+        "followed": followed(result),
         "reference": _reference(vehicle.get("reference") or {}),
         "mesh_rows": _mesh_rows(result),
         "time_rows": _time_rows(result),
         "shape_rows": _shape_rows(vehicle.get("shape") or {}),
         "vehicle_tables": _vehicle_tables(vehicle),
         "settings": json.dumps(result.get("settings") or {}, indent=2, ensure_ascii=False),
+    }
+
+
+def followed(result: dict) -> dict | None:
+    """Picture (base64 of a PNG, "" where there is none), events and gaps of the modes along the Mach number."""
+    found = result.get("mode_branches")
+    if not found or len(result["flight_points"]) < 2:
+        return None
+    picture = over_parameter(branches.from_record(found), "Mach number") if found["branches"] else b""
+    return {
+        "picture": base64.b64encode(picture).decode(),
+        "names": ", ".join(found["flight_points"]),
+        "events": branches.event_rows(found),
+        "reasons": found["reasons"],
     }
 
 

@@ -14,8 +14,9 @@ from rich.table import Table
 from rich.text import Text
 
 from spaceplane.qualities.probability import per_cent
+from spaceplane.report.card import yaw_sentence
 from spaceplane.report.flight_point import LEVEL_CSS, level_of, time_text, worst_levels
-from spaceplane.report.likelihood import outcome_chip
+from spaceplane.report.likelihood import SHOWN_DRIVERS, eigenvalue_error, outcome_chip
 from spaceplane.report.names import stability
 from spaceplane.report.numbers import duration, fixed, grouped, is_number, measured, number
 from spaceplane.report.plots import eigenvalue_text
@@ -65,6 +66,9 @@ def print_summary(result: dict, report: Path | None = None, console: Console | N
     points = result["flight_points"]
     console.print(Text(result["vehicle"]["name"], style="bold"), highlight=False)
     console.print(_points_table(points))
+    for p in points:
+        if yaw_sentence(p):
+            console.print(f"{p['name']}: {yaw_sentence(p)}", highlight=False, soft_wrap=True)
     for p in points:
         if p.get("modes"):
             console.print(_modes_table(f"modes at {p['name']}", p["modes"]))
@@ -130,7 +134,7 @@ def _derivative_cell(name: str, record: dict) -> Text:
     return Text(str(measured(value, error)), style=SIGN_COLOURS[stability(name, value, error)])
 
 
-def _modes_table(title: str, modes: list[dict]) -> Table:
+def _modes_table(title: str, modes: list[dict], details: bool = False) -> Table:
     table = _table(title)
     for heading in ("eigenvalue, 1/s", "half or double time", "period", "damping"):
         table.add_column(heading, justify="right", no_wrap=True)
@@ -143,7 +147,20 @@ def _modes_table(title: str, modes: list[dict]) -> Table:
             duration(mode.get("period_s")),
             number(mode.get("damping_ratio"), 3),
         )
+        if details:
+            table.add_row(Text(_drivers(mode), style="dim"), Text(eigenvalue_error(mode), style="dim"))
     return table
+
+
+def _drivers(mode: dict) -> str:
+    """What makes a mode uncertain or, without errors, moves it most by one per cent each."""
+    found = mode.get("drivers") or []
+    if not found:
+        return ""
+    said = "uncertain by" if any(d.get("error") for d in found) else "moved most by"
+    return f"  {said} " + ", ".join(
+        f"{d['parameter']} {per_cent(d['share'])}" for d in found[:SHOWN_DRIVERS] if d["share"] >= 0.02
+    )
 
 
 def _levels_table(points: list[dict]) -> Table:
@@ -197,7 +214,7 @@ def _share(verdict: dict | None, outcome: str) -> str:
 def print_modes(record: dict, console: Console | None = None) -> None:
     """Print the modes and levels of a `spaceplane modes` record."""
     console = console or _console()
-    console.print(_modes_table("mode", record["modes"]))
+    console.print(_modes_table("mode", record["modes"], details=True))
     if record.get("verdicts"):
         console.print(_levels_table([{"name": "verdict", "verdicts": record["verdicts"]}]))
     if record.get("airframe_verdicts"):

@@ -1,15 +1,21 @@
-"""Aerodynamic forces and moments, and the moments of thrusters, that act on the vehicle."""
+"""Aerodynamic forces and moments, and the moments of thrusters, that act on the vehicle.
+
+Lift and pitching moment may depend on dalpha/dt, which depends on the lift: with alpha'_0 the rate that all other
+forces give, L_a = q S CL_alphadot c/2V the lift per rate and m V cos(beta) what it takes to turn the path,
+
+    alpha' = alpha'_0 - L_a alpha' / (m V cos(beta)),  so  alpha' = alpha'_0 / (1 + L_a / (m V cos(beta)))
+"""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from spaceplane.dynamics.motion.state import FlightState
-from spaceplane.dynamics.motion.vehicle import Vehicle
+from spaceplane.dynamics.motion.vehicle import Vehicle, lag_of
 from spaceplane.dynamics.statespace import MOMENT_INPUTS
 from spaceplane.environment.atmosphere import Ambient
 from spaceplane.errors import InputError
@@ -36,6 +42,7 @@ class Loads:
         mach: Mach number; NaN in vacuum.
         dynamic_pressure: Pa.
         coefficients: CL, CD, CY, Cl, Cm, Cn; 0 in vacuum.
+        lag: (lift, pitching moment) per rate of the angle of attack, N s and N m s; not in the above by itself.
     """
 
     drag: float
@@ -45,6 +52,7 @@ class Loads:
     mach: float
     dynamic_pressure: float
     coefficients: Mapping[str, float]
+    lag: tuple[float, float] = (0.0, 0.0)
 
 
 def controls_at(controls: Controls, time: float, state: Callable[[], FlightState]) -> Mapping[str, float]:
@@ -62,7 +70,7 @@ def loads(
     turning: np.ndarray,
     controls: Mapping[str, float],
 ) -> Loads:
-    """Forces and moments on the vehicle.
+    """Forces and moments on the vehicle, at a steady angle of attack.
 
     Args:
         vehicle: with its aerodynamics.
@@ -92,4 +100,37 @@ def loads(
     pressure = 0.5 * ambient.density * V**2
     force = pressure * reference.area
     moment = force * np.array([span * c["Cl"], chord * c["Cm"], span * c["Cn"]]) + thrusters
-    return Loads(force * c["CD"], force * c["CY"], force * c["CL"], moment, mach, pressure, c)
+    lift_lag, pitch_lag = (force * chord / (2 * V) * slope for slope in lag_of(vehicle.aerodynamics))
+    lag = (lift_lag, chord * pitch_lag)
+    return Loads(force * c["CD"], force * c["CY"], force * c["CL"], moment, mach, pressure, c, lag)
+
+
+def with_lag(acting: Loads, vehicle: Vehicle, V: float, beta: float, steady_rate: float) -> Loads:
+    """The loads with those by the rate of the angle of attack, which they change themselves: solved exactly.
+
+    Args:
+        acting: at a steady angle of attack.
+        vehicle: its mass, kg, and aerodynamics.
+        V: airspeed, m/s.
+        beta: rad.
+        steady_rate: dalpha/dt, rad/s, that `acting` and gravity would give.
+
+    Raises:
+        InputError: CL_alphadot is so negative that no rate solves the equation.
+    """
+    lift_lag, pitch_lag = acting.lag
+    implicit = 1.0 + lift_lag / (vehicle.mass * V * math.cos(beta))
+    if not implicit > 0.0:
+        raise InputError(
+            f"CL_alphadot = {lag_of(vehicle.aerodynamics)[0]:.6g}: the lift it takes away exceeds the vehicle's inertia"
+        )
+    rate = steady_rate / implicit
+    chord = vehicle.aerodynamics.reference.chord
+    reduced = rate * chord / (2 * V)
+    slopes = dict(zip(("CL", "Cm"), lag_of(vehicle.aerodynamics), strict=True))
+    return replace(
+        acting,
+        lift=acting.lift + lift_lag * rate,
+        moment=acting.moment + np.array([0.0, pitch_lag * rate, 0.0]),
+        coefficients={name: c + slopes.get(name, 0.0) * reduced for name, c in acting.coefficients.items()},
+    )

@@ -22,9 +22,6 @@ class LinearAerodynamics:
         alpha_reach: how far the angle of attack may leave the point's to either side, rad.
         mach_reach: how far the Mach number may, to either side.
         beta_limit: greatest sideslip to either side, rad.
-
-    Raises:
-        InputError: derivatives with dalpha/dt are given: the equations of motion here take none.
     """
 
     model: FlightModel
@@ -32,17 +29,15 @@ class LinearAerodynamics:
     mach_reach: float = 0.5
     beta_limit: float = math.radians(10.0)
 
-    def __post_init__(self) -> None:
-        for name in ("CL_alphadot", "Cm_alphadot"):
-            if getattr(self.model.derivatives, name) != 0.0:
-                raise InputError(
-                    f"{name} = {getattr(self.model.derivatives, name):g}: must be 0 in the nonlinear motion"
-                )
-
     @property
     def reference(self) -> ReferenceLengths:
         """Reference area and lengths."""
         return self.model.reference
+
+    @property
+    def lag(self) -> tuple[float, float]:
+        """(CL_alphadot, Cm_alphadot), on dalpha/dt c/2V."""
+        return self.model.derivatives.CL_alphadot, self.model.derivatives.Cm_alphadot
 
     def coefficients(
         self,
@@ -52,7 +47,7 @@ class LinearAerodynamics:
         rates: tuple[float, float, float] = (0.0, 0.0, 0.0),
         deflections: Mapping[str, float] | None = None,
     ) -> dict[str, float]:
-        """CL, CD, CY in wind axes and Cl, Cm, Cn in body axes.
+        """CL, CD, CY in wind axes and Cl, Cm, Cn in body axes, at a steady angle of attack.
 
         Args:
             mach: Mach number.

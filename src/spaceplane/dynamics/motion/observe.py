@@ -3,18 +3,23 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
+
+import numpy as np
 
 from spaceplane.dynamics import attitude, frames
-from spaceplane.dynamics.motion.forces import COEFFICIENTS, Air, Controls, controls_at, loads
-from spaceplane.dynamics.motion.state import TRAJECTORY_STATES, FlightState, to_trajectory
+from spaceplane.dynamics.motion.body import fixed_loads
+from spaceplane.dynamics.motion.forces import COEFFICIENTS, Air, Controls
+from spaceplane.dynamics.motion.state import TRAJECTORY_STATES, FlightState, to_fixed, to_trajectory
 from spaceplane.dynamics.motion.vehicle import Vehicle
-from spaceplane.dynamics.planet import Planet, geodetic, planet_rate, potential
+from spaceplane.dynamics.motion.wind import air_velocity
+from spaceplane.dynamics.planet import Planet, geodetic, potential
 from spaceplane.environment.constants import STANDARD_GRAVITY
 
 QUANTITIES: dict[str, tuple[str, str]] = {
     "V": ("m/s", "speed against the air"),
-    "gamma": ("rad", "flight-path angle above the planetocentric horizon"),
-    "chi": ("rad", "heading from north to the east, in (-pi, pi]"),
+    "gamma": ("rad", "flight-path angle through the air above the planetocentric horizon"),
+    "chi": ("rad", "heading of the path through the air, from north to the east, in (-pi, pi]"),
     "R": ("m", "distance from the planet's centre"),
     "lon": ("rad", "longitude, in (-pi, pi]"),
     "lat": ("rad", "planetocentric latitude"),
@@ -29,6 +34,8 @@ QUANTITIES: dict[str, tuple[str, str]] = {
     "psi": ("rad", "Euler angle of yaw against the planetocentric horizon"),
     "theta": ("rad", "Euler angle of pitch against the planetocentric horizon"),
     "phi": ("rad", "Euler angle of roll against the planetocentric horizon"),
+    "ground_speed": ("m/s", "speed against the planet; V without wind"),
+    "track": ("rad", "heading of the path over the planet, in (-pi, pi]; chi without wind"),
     "mach": ("1", "Mach number; NaN in vacuum"),
     "dynamic_pressure": ("Pa", "half the density times the square of the speed"),
     "load_factor": ("1", "aerodynamic force up in body axes over the weight at standard gravity"),
@@ -61,13 +68,15 @@ def observe(
     Raises:
         InputError: outside of the air or of the aerodynamics known.
     """
-    found = dict(zip(TRAJECTORY_STATES, (float(x) for x in to_trajectory(state)), strict=True))
+    in_air = replace(state, velocity=state.velocity - air_velocity(air, planet, state.position))
+    found = dict(zip(TRAJECTORY_STATES, (float(x) for x in to_trajectory(in_air)), strict=True))
     altitude, _, latitude = geodetic(planet, state.position)
     to_axes = attitude.matrix(state.attitude)
-    relative = state.rates - to_axes.T @ planet_rate(planet)
-    given = controls_at(controls, time, lambda: state)
-    acting = loads(vehicle, air, altitude, found["V"], found["alpha"], found["beta"], relative, given)
-    horizon = attitude.from_matrix(frames.planet_to_horizon(found["lon"], found["lat"]) @ to_axes)
+    acting = fixed_loads(time, to_fixed(state), vehicle, planet, controls, air)
+    to_horizon = frames.planet_to_horizon(found["lon"], found["lat"])
+    north, east, _ = to_horizon @ state.velocity
+    ground_speed = float(np.linalg.norm(state.velocity))
+    horizon = attitude.from_matrix(to_horizon @ to_axes)
     yaw, pitch, roll = attitude.euler_angles(horizon)
     cos_a, sin_a = math.cos(found["alpha"]), math.sin(found["alpha"])
     cos_b, sin_b = math.cos(found["beta"]), math.sin(found["beta"])
@@ -83,6 +92,8 @@ def observe(
         "mach": acting.mach,
         "dynamic_pressure": acting.dynamic_pressure,
         "load_factor": up / (vehicle.mass * STANDARD_GRAVITY),
-        "energy": 0.5 * found["V"] ** 2 + float(potential(planet, state.position)) - centrifugal,
+        "ground_speed": ground_speed,
+        "track": math.atan2(east, north),
+        "energy": 0.5 * ground_speed**2 + float(potential(planet, state.position)) - centrifugal,
         **{name: float(acting.coefficients[name]) for name in COEFFICIENTS},
     }

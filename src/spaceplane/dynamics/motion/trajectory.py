@@ -35,10 +35,12 @@ import math
 import numpy as np
 
 from spaceplane.dynamics import frames
-from spaceplane.dynamics.motion.forces import Air, Controls, Loads, controls_at, loads
+from spaceplane.dynamics.motion.forces import Air, Controls, Loads, controls_at, loads, with_lag
 from spaceplane.dynamics.motion.state import check_regular, from_trajectory_array
 from spaceplane.dynamics.motion.vehicle import Vehicle, angular_acceleration
+from spaceplane.dynamics.motion.wind import MovingAir
 from spaceplane.dynamics.planet import Planet, geodetic_meridian, gravity_north_down
+from spaceplane.errors import InputError
 
 
 def trajectory_rates(
@@ -55,14 +57,19 @@ def trajectory_rates(
         air: the air by altitude, m.
 
     Raises:
-        InputError: outside of the air or of the aerodynamics known, or at a singularity of this form.
+        InputError: outside of the air or of the aerodynamics known, at a singularity of this form, or a wind.
     """
+    _still(air)
     check_regular(values)
     acting = _acting(time, values, vehicle, planet, controls, air)
-    path = _path(values, vehicle, planet, acting)
-    wind = _wind_rates(values, path, planet)
     alpha, beta = float(values[9]), float(values[10])
     P, Q, yaw = frames.body_to_wind(alpha, beta) @ values[6:9]
+    path = _path(values, vehicle, planet, acting)
+    wind = _wind_rates(values, path, planet)
+    if any(acting.lag):
+        acting = with_lag(acting, vehicle, float(values[0]), beta, (Q - wind[1]) / math.cos(beta))
+        path = _path(values, vehicle, planet, acting)
+        wind = _wind_rates(values, path, planet)
     alpha_dot = (Q - wind[1]) / math.cos(beta)
     attitude = (alpha_dot, wind[2] - yaw, P - wind[0] - alpha_dot * math.sin(beta))
     return np.array([*path, *angular_acceleration(vehicle, values[6:9], acting.moment), *attitude])
@@ -82,8 +89,9 @@ def steady_rates(
         time: s, for a control law.
 
     Raises:
-        InputError: outside of the air or of the aerodynamics known, or at a singularity of this form.
+        InputError: outside of the air or of the aerodynamics known, at a singularity of this form, or a wind.
     """
+    _still(air)
     check_regular(values)
     values = np.array(values, dtype=float)
     to_body = frames.wind_to_body(float(values[9]), float(values[10]))
@@ -95,6 +103,11 @@ def steady_rates(
         if change <= 1e-15 + 1e-14 * np.abs(rates).max():
             break
     return values[6:9]
+
+
+def _still(air: Air) -> None:
+    if isinstance(air, MovingAir):
+        raise InputError("wind: the trajectory form takes none, its speed and angles are those against still air")
 
 
 def _acting(time: float, values: np.ndarray, vehicle: Vehicle, planet: Planet, controls: Controls, air: Air) -> Loads:

@@ -18,6 +18,8 @@ class Aerodynamics(Protocol):
 
     Attributes:
         reference: area, chord, span; the moment centre is taken as the centre of mass.
+
+    A model may have a further attribute `lag`, (CL_alphadot, Cm_alphadot) on dalpha/dt c/2V: see `lag_of`.
     """
 
     reference: ReferenceLengths
@@ -36,6 +38,11 @@ class Aerodynamics(Protocol):
             InputError: outside of what the model knows; it must never extrapolate.
         """
         ...
+
+
+def lag_of(aerodynamics: Aerodynamics) -> tuple[float, float]:
+    """(CL_alphadot, Cm_alphadot) of a model, on dalpha/dt c/2V; 0 where it has none."""
+    return getattr(aerodynamics, "lag", (0.0, 0.0))
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -22,7 +22,7 @@ from spaceplane.dynamics.flightpoint import AngularRates, FlightPoint
 from spaceplane.dynamics.frames import body_to_wind, wind_to_trajectory
 from spaceplane.dynamics.trim.allocation import MOMENTS, Allocation, allocate
 from spaceplane.dynamics.trim.effects import Limits
-from spaceplane.errors import InputError
+from spaceplane.errors import InputError, unknown_name
 from spaceplane.vehicle.properties import MassProperties, ReferenceLengths
 
 _ITERATIONS = 60
@@ -38,6 +38,7 @@ class LateralTrim:
         beta, bank: rad.
         rates: body rates, rad/s.
         reason: why it is not trimmed; empty where it is.
+        external: Cl, Cm, Cn of moments from elsewhere that the surfaces had to balance.
     """
 
     allocation: Allocation | None
@@ -45,6 +46,7 @@ class LateralTrim:
     bank: float
     rates: AngularRates
     reason: str = ""
+    external: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def found(self) -> bool:
@@ -108,6 +110,7 @@ def trim_lateral(
     straight: bool = False,
     held: Mapping[str, float] | None = None,
     limits: Limits | None = None,
+    external: Mapping[str, float] | None = None,
 ) -> LateralTrim:
     """Deflections of steady flight at a point's Mach number, angle of attack, path angle and bank.
 
@@ -119,12 +122,14 @@ def trim_lateral(
         straight: find the bank that keeps the heading, instead of the point's.
         held: surfaces that cannot move, rad: failed, or set by a schedule.
         limits: narrower than those of the tables, rad.
+        external: moments that are not the model's, such as those of thrust to one side, as coefficients Cl, Cm, Cn.
 
     Raises:
-        InputError: an unknown surface, a value that is not finite, or no lift to bank with.
+        InputError: an unknown surface or moment, a value that is not finite, or no lift to bank with.
     """
     if beta is not None and not math.isfinite(beta):
         raise InputError(f"beta = {beta}: must be a finite number")
+    external = _checked_moments(external or {})
     ref = model.reference
     wanted_force = {} if beta is not None else {"CY": 0.0}
     lengths = np.array([ref.span, ref.chord, ref.span])
@@ -143,7 +148,8 @@ def trim_lateral(
             angle = beta if allocation is None else allocation.beta
             rates = steady_rates(point, mass.mass, ref.area, CL, CY, angle or 0.0, bank)
             reduced = np.array([rates.p, rates.q, rates.r]) * lengths / (2.0 * point.velocity)
-            wanted = gyroscopic_moments(point, mass, ref, rates) | wanted_force
+            needed = gyroscopic_moments(point, mass, ref, rates)
+            wanted = {name: value - external.get(name, 0.0) for name, value in needed.items()} | wanted_force
             allocation = allocate(model, point.mach, point.alpha, wanted, beta, tuple(reduced.tolist()), held, limits)
             new = allocation.coefficients["CL"], allocation.coefficients["CY"]
             moved = max(abs(new[0] - CL), abs(new[1] - CY))
@@ -152,10 +158,21 @@ def trim_lateral(
                 break
         else:
             if allocation.found:
-                return LateralTrim(allocation, allocation.beta, bank, rates, "lift and turning rate do not settle")
+                return LateralTrim(
+                    allocation, allocation.beta, bank, rates, "lift and turning rate do not settle", external
+                )
     except OutsideTables as error:
-        return LateralTrim(None, beta or 0.0, bank, rates, f"outside the tables: {error}")
-    return LateralTrim(allocation, allocation.beta, bank, rates, allocation.reason)
+        return LateralTrim(None, beta or 0.0, bank, rates, f"outside the tables: {error}", external)
+    return LateralTrim(allocation, allocation.beta, bank, rates, allocation.reason, external)
+
+
+def _checked_moments(external: Mapping[str, float]) -> dict[str, float]:
+    for name, value in external.items():
+        if name not in MOMENTS:
+            raise InputError(unknown_name("moment", name, MOMENTS))
+        if not math.isfinite(value):
+            raise InputError(f"external {name} = {value}: must be a finite number")
+    return dict(external)
 
 
 def balanced(
@@ -172,4 +189,5 @@ def balanced(
     if trim.allocation is None:
         return dict.fromkeys(MOMENTS, math.nan)
     needed = gyroscopic_moments(point, mass, reference, trim.rates)
-    return {name: trim.allocation.coefficients[name] - needed[name] for name in MOMENTS}
+    given = trim.allocation.coefficients
+    return {name: given[name] + trim.external.get(name, 0.0) - needed[name] for name in MOMENTS}
