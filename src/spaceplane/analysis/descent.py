@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from spaceplane.aero.model.model import AeroModel, OutsideTables
+from spaceplane.analysis.controllability import Controllability, controllability
+from spaceplane.analysis.feedback_settings import FeedbackSettings
 from spaceplane.dynamics.flightpoint import TAEM_BANK_DEG, TAEM_GAMMA_DEG, FlightPoint, taem_point
 from spaceplane.dynamics.linearise import FORMS
 from spaceplane.dynamics.modes import Mode
@@ -44,6 +46,7 @@ class DescentSettings:
             chooses the one that leaves the elevator the largest margin.
         form: of the linear model, see `dynamics.linearise.FORMS`.
         vehicle_class, category: of MIL-F-8785C.
+        feedback: what a stabilising feedback is put to; None leaves it out.
 
     Raises:
         InputError: Mach numbers that do not increase, or an unknown form, class or category.
@@ -56,6 +59,7 @@ class DescentSettings:
     form: str = FORMS[0]
     vehicle_class: str = "III"
     category: str = "B"
+    feedback: FeedbackSettings | None = field(default_factory=FeedbackSettings)
 
     def __post_init__(self) -> None:
         machs = np.asarray(self.machs, dtype=float)
@@ -76,6 +80,7 @@ class DescentPoint:
         system: linear model about the trim; None without.
         modes, verdicts: of it.
         reason: why there is no trim or no linear model; empty where there is.
+        control: what the controls can do; None without a linear model or where none was asked for.
     """
 
     point: FlightPoint
@@ -84,6 +89,7 @@ class DescentPoint:
     modes: tuple[Mode, ...] = ()
     verdicts: tuple[Verdict, ...] = ()
     reason: str = ""
+    control: Controllability | None = None
 
 
 @dataclass(frozen=True)
@@ -155,8 +161,11 @@ def _at(model: AeroModel, mass: MassProperties, point: FlightPoint, settings: De
     except OutsideTables as error:
         return DescentPoint(point, trim, reason=f"outside the tables: {error}")
     airframe = Airframe(point, mass, model.reference, derivatives, 0.0, trim.elevator)
-    assessed = assess_all(airframe, settings.vehicle_class, settings.category, settings.form)
-    return DescentPoint(point, trim, assessed.system, assessed.modes, assessed.verdicts)
+    judged = (settings.vehicle_class, settings.category)
+    assessed = assess_all(airframe, *judged, settings.form)
+    asked = settings.feedback
+    control = controllability(airframe, assessed.system, deflections, asked, *judged) if asked else None
+    return DescentPoint(point, trim, assessed.system, assessed.modes, assessed.verdicts, control=control)
 
 
 def _followed(points: Sequence[DescentPoint]) -> Branches | None:

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from spaceplane.commands import options
+from spaceplane.commands import feedback, options
 from spaceplane.commands.arguments import mach_numbers, number, writable_file, write_json
 from spaceplane.commands.progress import progress_bar
 from spaceplane.errors import InputError
@@ -46,10 +46,14 @@ def fly(
         str | None,
         typer.Option("--vehicle", metavar="VEHICLE", help="Preset or YAML file with mass and reference lengths."),
     ] = None,
+    control: feedback.Control = True,
+    gust: feedback.Gust = None,
+    offset: feedback.Offset = None,
+    decay: feedback.Decay = None,
     out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder to write into.")] = Path("out/fly"),
     json_file: options.JsonFile = None,
 ) -> int:
-    """Trim map, trimmed flight points, modes followed along the Mach number, levels and a page of it all.
+    """Trim map, trimmed flight points, modes followed along the Mach number, levels, control and a page of it all.
 
     Exit code 1 when no flight point could be trimmed, 2 for bad input.
     """
@@ -59,6 +63,7 @@ def fly(
     given |= {"form": form, "vehicle_class": vehicle_class, "category": category}
     given |= {} if machs is None else {"machs": tuple(machs)}
     given |= {} if body_flap is None else {"body_flap": math.radians(number("--body-flap", body_flap, "deg"))}
+    given["feedback"] = feedback.settings(control, gust, offset, decay)
     writable_file(json_file, "--json")
     from spaceplane.analysis.descent import DescentSettings, descend
     from spaceplane.decks.source import PUBLISHED, read_source

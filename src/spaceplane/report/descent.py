@@ -14,6 +14,8 @@ from spaceplane.files import json_text, renamed_when_done, told, write_text
 from spaceplane.plain import finite
 from spaceplane.qualities.verdict import Verdict
 from spaceplane.qualities.verdict import to_record as verdict_record
+from spaceplane.report import descent_control
+from spaceplane.report.control_record import control_record
 from spaceplane.report.figures_dynamics import over_parameter, phasors, root_locus
 from spaceplane.report.plain_page import Table, document, picture_html, table_html
 from spaceplane.report.read import level_text
@@ -95,6 +97,7 @@ def _point_record(one: DescentPoint) -> dict:
         },
         "modes": [to_record(mode) for mode in one.modes],
         "verdicts": [verdict_record(verdict) for verdict in one.verdicts],
+        "control": control_record(one.control, histories=False),
     }
 
 
@@ -109,7 +112,7 @@ def pictures(descent: Descent) -> dict[str, bytes]:
     flown = [one for one in descent.points if one.modes]
     if flown:
         drawn["eigenvectors"] = phasors(flown[0].modes, flown[0].point.velocity)
-    return drawn
+    return drawn | descent_control.pictures(descent)
 
 
 def page(descent: Descent, drawn: dict[str, bytes]) -> str:
@@ -126,7 +129,7 @@ def page(descent: Descent, drawn: dict[str, bytes]) -> str:
     for table in tables(descent):
         parts.append(table_html(table))
         parts += [picture_html(drawn[name], text) for name, text in _BELOW.get(table.title, ()) if name in drawn]
-    return document(title, parts)
+    return document(title, [*parts, *descent_control.html_parts(descent, drawn)])
 
 
 _BELOW = {
