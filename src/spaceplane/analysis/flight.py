@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING
 
 from spaceplane.aero.integrate import TOTAL
 from spaceplane.aero.model.derivatives import COEFFICIENTS, DAMPING, STATIC, Derivatives
 from spaceplane.aero.uncertainty.settings import MESH
+from spaceplane.analysis.controllability import Controllability, controllability
 from spaceplane.analysis.settings import AnalyseSettings
 from spaceplane.dynamics.flightpoint import AngularRates, FlightPoint, equilibrium_rates
 from spaceplane.dynamics.linearise import linearise
@@ -46,6 +47,7 @@ class PointAnalysis:
         uncertainty: of the derivatives, from their stated errors; None without any.
         outlooks: the verdicts' probabilities; empty without uncertainty.
         sensitivities: of the modes, in their order.
+        control: what the controls can do, from the deflections that were solved; None without a linear model.
     """
 
     point: FlightPoint
@@ -59,6 +61,7 @@ class PointAnalysis:
     uncertainty: Uncertainty | None = None
     outlooks: tuple[Outlook, ...] = ()
     sensitivities: tuple[ModeSensitivity, ...] = ()
+    control: Controllability | None = None
 
 
 def fly(
@@ -123,6 +126,7 @@ def fly(
         uncertainty=uncertainty,
         outlooks=outlooks(airframe, uncertainty, *judged, samples=SAMPLES, form=settings.form) if uncertainty else (),
         sensitivities=of_model(*model, system.A, modes, settings.form),
+        control=controllability(airframe, system, asdict(settings.deflections), settings.feedback, *judged),
     )
 
 

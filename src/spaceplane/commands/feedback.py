@@ -28,10 +28,10 @@ Decay = Annotated[
 
 
 def settings(control: bool, gust: str | None, offset: str | None, decay: str | None) -> FeedbackSettings | None:
-    """The settings that the options make; None for `--no-control`.
+    """The settings that the options make; None without `--control`.
 
     Raises:
-        InputError: not a number, out of range, or given with `--no-control`.
+        InputError: not a number, out of range, or given without `--control`.
     """
     from spaceplane.analysis.feedback_settings import FeedbackSettings
 
@@ -39,7 +39,7 @@ def settings(control: bool, gust: str | None, offset: str | None, decay: str | N
     given = {name: number(f"--{name}", text, unit) for name, (text, unit) in texts.items() if text is not None}
     if not control:
         if given:
-            raise InputError(f"--{next(iter(given))}: has no effect with --no-control")
+            raise InputError(f"--{next(iter(given))}: has no effect without --control")
         return None
     if "offset" in given:
         given["offset"] = math.radians(given["offset"])

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 STYLE = FIGURE_STYLE | {"font.size": 9, "savefig.dpi": 110}
 OPEN, CLOSED = "#888888", "#0077bb"
-MOMENTS = {"moment_x": "M_x", "moment_y": "M_y", "moment_z": "M_z"}
+MOMENTS = {"moment_x": "$M_x$", "moment_y": "$M_y$", "moment_z": "$M_z$"}
 NEAR = 0.08
 """1/s: half the width of the closer view."""
 
@@ -150,7 +150,8 @@ def _inputs(axes: Axes, one: dict) -> None:
     if len(one["inputs"]) > 1:
         axes.set_ylabel(axes.get_ylabel() if one["inputs"][0] in MOMENTS else "from trim, deg")
         lines = [*axes.lines, *(right.lines if right else [])]
-        axes.legend(lines, [line.get_label() for line in lines], frameon=False, fontsize=8)
+        place = {"loc": "lower center", "bbox_to_anchor": (0.5, 0.97), "ncols": len(lines), "borderaxespad": 0.0}
+        axes.legend(lines, [line.get_label() for line in lines], frameon=False, fontsize=8, **place)
 
 
 def _broken(text: str) -> str:

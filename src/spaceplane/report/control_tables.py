@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from spaceplane.report.flight_point import level_of, worst_levels
+from spaceplane.report.flight_point import level_css, level_of, worst_levels
 from spaceplane.report.numbers import is_number
 from spaceplane.report.read import level_text
 
@@ -95,6 +95,12 @@ def worst_text(verdicts: Sequence[dict]) -> str:
     found = [(order.get(level_of(v), 0), name, level_of(v)) for name, v in worst_levels(list(verdicts)).items()]
     rank, name, level = max(found, default=(0, "", None))
     return f"{level_text(level)} ({name})" if rank else "–"
+
+
+def level_chip(verdict: dict | None) -> dict[str, str]:
+    """A level in words with its colour class."""
+    level = level_of(verdict) if verdict else None
+    return {"text": "n/a" if level is None else level_text(level), "css": level_css(level)}
 
 
 def held_text(record: dict, axis: str) -> str:
