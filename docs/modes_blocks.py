@@ -37,7 +37,6 @@ from spaceplane.qualities.assess import load_factor_slope
 from spaceplane.qualities.verdict import to_record
 from spaceplane.report import control_tables
 from spaceplane.report.control_record import control_record
-from spaceplane.report.numbers import fixed
 from spaceplane.vehicle import presets
 
 DOCS = Path(__file__).resolve().parent
@@ -274,7 +273,7 @@ def descent_table() -> str:
                 f"{one.point.mach:g}",
                 f"{max(mode['eigenvalue'][0] for mode in record['modes']):.3f}",
                 control_tables.held_text(record, "alpha"),
-                f"{fixed(elevons.least, 1)} to {fixed(elevons.greatest, 1)}",
+                control_tables.range_text(elevons),
                 f"{elevons.rate:.1f}",
                 *moments,
                 before,

@@ -12,7 +12,15 @@ from spaceplane.report import write_report
 from spaceplane.report.control_figures import motions, roots
 from spaceplane.report.control_plots import response_plot
 from spaceplane.report.control_summary import print_control
-from spaceplane.report.control_tables import asked, held_text, supplied, supplied_text, within_text, worst_text
+from spaceplane.report.control_tables import (
+    asked,
+    held_text,
+    range_text,
+    supplied,
+    supplied_text,
+    within_text,
+    worst_text,
+)
 from spaceplane.report.flight_control import control
 
 from .example_result import control_of, example_result, verdict, write_example
@@ -72,6 +80,12 @@ def test_peaks_are_those_of_the_worst_surface_and_disturbance():
     )
     elevons, yaw = asked([first | {"thrusters_Nm": {}}, second | {"thrusters_Nm": {}}])
     assert (elevons.name, elevons.least, elevons.greatest, elevons.margin, elevons.rate) == ("elevons", -5, 41, -1, 9)
+    rudder = effort("rudder_left", 0.0, 12.0, 0.0, 1.0) | {"low": 0.0}
+    assert asked([{"efforts": [rudder]}])[0].margin == 28.0  # it stands at its inboard stop
+    assert (range_text(elevons), range_text(asked([{"efforts": [rudder | {"greatest": 0.01}]}])[0])) == (
+        "−5.0 to 41.0",
+        "0.0",
+    )
     assert yaw.thruster and (yaw.name, yaw.least, yaw.margin) == ("yaw thruster", -0.5, None)
 
 

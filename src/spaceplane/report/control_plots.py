@@ -7,11 +7,13 @@ from dataclasses import dataclass
 from html import escape
 
 from spaceplane.report.names import GREEK
+from spaceplane.report.plots import axes_above
 from spaceplane.report.svg import Frame, Scale, drawing, padded
 
 MOMENTS = {"moment_x": "M_x", "moment_y": "M_y", "moment_z": "M_z"}
 INPUT_CSS = ("c-x", "c-z", "c-y")
-_WIDTH, _LEFT, _PANEL, _GAP, _TOP = 300.0, 46.0, 72.0, 18.0, 16.0
+_WIDTH, _LEFT, _PANEL, _GAP, _TOP = 300.0, 46.0, 72.0, 22.0, 16.0
+_LEAST = 0.01  # deg, deg/s or kN m: a panel spans at least twice this, so that round-off does not fill it
 
 
 @dataclass(frozen=True)
@@ -34,12 +36,12 @@ def response_plot(record: dict) -> str:
     for k, panel in enumerate(panels):
         last = k == len(panels) - 1
         top = _TOP + k * (_PANEL + _GAP)
-        scale = Scale(*padded(_values(panel.lines), 0.08, 1e-9))
+        scale = Scale(*padded(_values(panel.lines), 0.08, _LEAST))
         frame = Frame(_LEFT, top, _WIDTH - _LEFT - 8, _PANEL, Scale(time[0], time[-1]), scale)
-        out.append(frame.axes("time, s" if last else "", "", 4, 3))
+        out.append(frame.axes("time, s", "", 4, 3) if last else axes_above(frame, 3))
         out.append(f'<text class="label" x="{_LEFT}" y="{top - 4}">{escape(panel.title)}</text>')
         out += [frame.line(time, values, css) for css, values in panel.lines]
-    height = _TOP + len(panels) * (_PANEL + _GAP) + 22
+    height = _TOP + len(panels) * (_PANEL + _GAP) + 18
     return drawing(_WIDTH, height, *out, title=record["name"])
 
 
@@ -48,7 +50,7 @@ def _values(lines: Iterable[tuple[str, Sequence[float]]]) -> list[float]:
 
 
 def _state(record: dict, name: str) -> _Panel:
-    lines = (("curve open", record["open"][name]), ("curve c-x", record["closed"][name]))
+    lines = (("curve c-x", record["closed"][name]), ("curve open", record["open"][name]))
     return _Panel(f"{GREEK.get(name, name)}, {record['units'][name]}", lines)
 
 

@@ -60,7 +60,7 @@ def _demands(record: dict) -> Table:
             if one.thruster:
                 cells.append(fixed(max(abs(one.least), abs(one.greatest)), 3))
             else:
-                cells += [f"{fixed(one.least, 1)} to {fixed(one.greatest, 1)}", fixed(one.rate, 1)]
+                cells += [say.range_text(one), fixed(one.rate, 1)]
         within = "–" if not record["surfaces"] else "yes" if event["within"] else "no"
         table.add_row(event["name"], *cells, say.supplied_text({"disturbances": [event]}), within)
     return table

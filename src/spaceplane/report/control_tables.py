@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from spaceplane.report.flight_point import level_css, level_of, worst_levels
-from spaceplane.report.numbers import is_number
+from spaceplane.report.numbers import fixed, is_number
 from spaceplane.report.read import level_text
 
 AXES = {"moment_x": "roll", "moment_y": "pitch", "moment_z": "yaw"}
@@ -63,7 +63,20 @@ def _peaks(name: str, efforts: Sequence[dict]) -> Asked:
     if thruster:
         return Asked(name, True, factor * least, factor * greatest)
     rate, limit = max(e["rate"] for e in efforts), min(e["rate_limit"] for e in efforts)
-    return Asked(name, False, least, greatest, min(e["margin"] for e in efforts), rate, limit)
+    return Asked(name, False, least, greatest, min(map(_margin, efforts)), rate, limit)
+
+
+def _margin(effort: dict) -> float:
+    """What is left to the nearer limit, deg; a rudder standing at its inboard stop has all its travel left."""
+    if effort["name"].startswith("rudder") and effort["least"] >= effort["low"]:
+        return effort["high"] - effort["greatest"]
+    return effort["margin"]
+
+
+def range_text(one: Asked) -> str:
+    """Least to greatest; one number where they are alike."""
+    least, greatest = fixed(one.least, 1), fixed(one.greatest, 1)
+    return least if least == greatest else f"{least} to {greatest}"
 
 
 def supplied(disturbances: Sequence[dict]) -> dict[str, float]:

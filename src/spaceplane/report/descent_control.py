@@ -66,7 +66,7 @@ def _captions(descent: Descent) -> dict[str, str]:
     mach = f"{_fastest(points).point.mach:g}"
     return {
         ROOTS: "Eigenvalues with the controls fixed and with the feedback",
-        MOTIONS: f"Motions at Mach {mach}, where the growth is fastest; linear, as differences from the flight point",
+        MOTIONS: f"Motions at Mach {mach}, where the growth is fastest (linear; alpha and beta without the gust)",
     }
 
 
@@ -161,7 +161,7 @@ def _cells(one: say.Asked | None, count: int) -> list[str]:
         return ["–"] * count
     if one.thruster:
         return [fixed(max(abs(one.least), abs(one.greatest)), 3)]
-    return [f"{fixed(one.least, 1)} to {fixed(one.greatest, 1)}", fixed(one.margin, 1), fixed(one.rate, 2)]
+    return [say.range_text(one), fixed(one.margin, 1), fixed(one.rate, 2)]
 
 
 def _levels(descent: Descent, records: dict[str, dict]) -> Table:

@@ -7,7 +7,7 @@ from markupsafe import Markup
 from spaceplane.report import control_tables as say
 from spaceplane.report.control_plots import response_plot
 from spaceplane.report.names import GREEK
-from spaceplane.report.numbers import MISSING, duration, fixed, is_number, number
+from spaceplane.report.numbers import MISSING, duration, fixed, number
 from spaceplane.report.plots import eigenvalue_text
 
 
@@ -35,7 +35,7 @@ def control(p: dict) -> dict | None:
 
 
 def _facts(record: dict) -> list[tuple[str, str]]:
-    energy, degrees = record["energy_s"], number(record["settings"]["offset_deg"], 3)
+    energy, degrees = record["energy_s"], f"{record['settings']['offset_deg']:.3g}"
     alone, lost = record["states_moved_by_surfaces"], record["uncontrolled_by_surfaces"]
     rows = [
         ("States that all inputs move", f"{record['states_moved']} of {record['states']}"),
@@ -92,10 +92,10 @@ def _demands(record: dict) -> dict:
         "demand_heads": heads,
         "demand_rows": rows,
         "judged": bool(record["surfaces"]),
-        "rate_limit": number(settings["rate_limit_degs"], 3),
-        "thruster": number(settings["thruster_Nm"] / 1e3, 3),
+        "rate_limit": f"{settings['rate_limit_degs']:.3g}",
+        "thruster": f"{settings['thruster_Nm'] / 1e3:.3g}",
         "decay": settings["decay_per_s"],
-        "horizon": number(record["horizon_s"], 3),
+        "horizon": f"{record['horizon_s']:g}",
     }
 
 
@@ -104,7 +104,7 @@ def _peaks(one: say.Asked | None, thruster: bool) -> list[str]:
         return [MISSING] * (1 if thruster else 3)
     if thruster:
         return [fixed(max(abs(one.least), abs(one.greatest)), 3)]
-    return [f"{fixed(one.least, 1)} to {fixed(one.greatest, 1)}", fixed(one.margin, 1), fixed(one.rate, 1)]
+    return [say.range_text(one), fixed(one.margin, 1), fixed(one.rate, 1)]
 
 
 def _levels(p: dict, record: dict) -> list[dict]:
@@ -120,10 +120,8 @@ def _levels(p: dict, record: dict) -> list[dict]:
 
 
 def _closed(mode: dict) -> dict:
-    half = mode.get("half_time_s")
     return {
         "name": mode["name"],
         "eigenvalue": eigenvalue_text(mode["eigenvalue"]),
-        "half": duration(half) if is_number(half) else MISSING,
         "damping": number(mode.get("damping_ratio"), 3),
     }
