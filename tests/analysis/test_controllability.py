@@ -53,6 +53,11 @@ def test_thrusters_stand_in_where_no_surface_is_known(found):
     assert none.within is None and none.moved == (9, 0)
 
 
+def test_one_rudder_of_two_is_no_rudder():
+    found, _ = study(Cn_rudder_left=-0.02)
+    assert found.inputs.surfaces == ("elevator",) and "moment_z" in found.inputs.stand_ins
+
+
 def test_a_trim_at_the_limit_leaves_nothing_to_feed_back():
     up = {"elevon_left": math.radians(-40.0), "elevon_right": math.radians(-40.0)}
     inputs = usable_inputs(horus.derivatives(**ELEVONS), up, 1e4)
@@ -187,6 +192,16 @@ def test_motions_are_those_of_the_vehicle(found):
     assert abs(pitch.open_loop["alpha"].values[-1]) > 5.0 * abs(pitch.closed_loop["alpha"].values[-1])
     gust = found.responses[2]
     assert gust.open_loop["q"].values[5] > 0  # unstable in pitch: air from below turns the nose up
+
+
+def test_fast_growth_is_shown_for_less_time(found):
+    """Three time constants of the growth in pitch; ten of it at most in roll and yaw."""
+    faster, _ = study(Cm_alpha=100.0 * horus.derivatives().Cm_alpha)
+    for one in (found, faster):
+        growth = np.linalg.eigvals(one.regulator.system.A).real.max()
+        ends = [response.open_loop["time"].values[-1] for response in one.responses[:2]]
+        assert ends == pytest.approx([3.0 / growth, min(12.0, 10.0 / growth)], rel=1e-9)
+        assert np.isfinite([run[name].values for run in (one.responses[1].open_loop,) for name in run]).all()
 
 
 def test_an_elevator_down_pitches_down_at_once(found):

@@ -45,7 +45,7 @@ def usable_inputs(derivatives: Derivatives, trim: Mapping[str, float], thruster:
     """
     surfaces, stand_ins = [], {}
     for control, coefficient, moment in AXES:
-        if derivatives.control(coefficient, control) == 0.0:
+        if control not in derivatives.available_controls() or derivatives.control(coefficient, control) == 0.0:
             stand_ins[moment] = f"no {MOMENTS[coefficient]} moment of the {control} is known"
             continue
         alone = authority([control], trim)

@@ -19,12 +19,14 @@ if TYPE_CHECKING:
     import xarray as xr
 
 POINTS = 121
-LONGEST, SHORTEST = 12.0, 3.0  # s
+LONGEST = 12.0  # s
 GROWTH = 3.0
 """Time constants that are shown of the fastest growth in pitch, or in roll and yaw: a factor of twenty."""
+COUPLED = 10.0
+"""Most time constants of the fastest growth of all, which a bank lets into every motion."""
 LATERAL = ("p", "r", "beta", "sigma")
 PULSE, PULSE_TIME = math.radians(1.0), 2.0
-"""rad and s of a doublet: half the time one way, half the other."""
+"""rad and s of a doublet: half the time one way, half the other; shorter where less than three seconds are shown."""
 
 
 @dataclass(frozen=True)
@@ -67,9 +69,10 @@ def responses(regulator: Regulator, events: Sequence[Disturbance]) -> tuple[Resp
 
 def _times(modes: Sequence[Mode], pitching: bool) -> np.ndarray:
     """[time] s, as long as the fastest growth of the modes that this motion is made of allows."""
-    growth = max((m.eigenvalue.real for m in modes if (m.share(*LATERAL) < 0.5) == pitching), default=0.0)
-    end = min(LONGEST, max(SHORTEST, GROWTH / growth)) if growth > 0.0 else LONGEST
-    return np.linspace(0.0, end, POINTS)
+    every = [mode.eigenvalue.real for mode in modes]
+    own = [mode.eigenvalue.real for mode in modes if (mode.share(*LATERAL) < 0.5) == pitching]
+    ends = [count / max(rates) for count, rates in ((GROWTH, own), (COUPLED, every)) if max(rates, default=0.0) > 0.0]
+    return np.linspace(0.0, min([LONGEST, *ends]), POINTS)
 
 
 def _shown(regulator: Regulator, pitching: bool) -> tuple[tuple[str, ...], tuple[str, ...]]:
@@ -80,9 +83,10 @@ def _shown(regulator: Regulator, pitching: bool) -> tuple[tuple[str, ...], tuple
 
 def _pulse(regulator: Regulator, times: np.ndarray) -> Response:
     """A doublet of the elevator; in the closed loop the feedback adds to what is commanded."""
-    name = f"elevator {math.degrees(PULSE):g} deg down and up, {PULSE_TIME:g} s"
+    pulse = min(PULSE_TIME, 2.0 / 3.0 * times[-1])
+    name = f"elevator {math.degrees(PULSE):g} deg down and up, {pulse:.2g} s"
     loops = [regulator.system, regulator.closed()]
-    runs = [doublet(loop, "elevator", PULSE, PULSE_TIME, times) for loop in loops]
+    runs = [doublet(loop, "elevator", PULSE, pulse, times) for loop in loops]
     motion = np.stack([runs[1][state].values for state in regulator.system.states])
     for row, control in zip(regulator.gain, regulator.limits.inputs, strict=True):
         runs[1][control] = runs[1][control] - row @ motion
