@@ -24,7 +24,7 @@ class Asked:
         thruster: whether it is one.
         least, greatest: deg or kN m.
         margin: deg to the nearer limit, negative beyond it; None for a thruster.
-        rate, rate_limit: deg/s; None for a thruster.
+        rate: greatest, deg/s; None for a thruster.
     """
 
     name: str
@@ -33,7 +33,6 @@ class Asked:
     greatest: float
     margin: float | None = None
     rate: float | None = None
-    rate_limit: float | None = None
 
 
 def input_name(name: str) -> str:
@@ -62,8 +61,7 @@ def _peaks(name: str, efforts: Sequence[dict]) -> Asked:
     least, greatest = min(e["least"] for e in efforts), max(e["greatest"] for e in efforts)
     if thruster:
         return Asked(name, True, factor * least, factor * greatest)
-    rate, limit = max(e["rate"] for e in efforts), min(e["rate_limit"] for e in efforts)
-    return Asked(name, False, least, greatest, min(map(_margin, efforts)), rate, limit)
+    return Asked(name, False, least, greatest, min(map(_margin, efforts)), max(e["rate"] for e in efforts))
 
 
 def _margin(effort: dict) -> float:
