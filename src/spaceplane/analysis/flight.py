@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING
 
@@ -99,15 +100,11 @@ def fly(
     if missing:
         reason = f"no linear model: {', '.join(missing)} rest on a condition that failed"
         return PointAnalysis(point, validity, rates, None, (), (), reason)
-    static = {name: values[name] for name in STATIC}
-    known = {n: v for n, v in values.items() if n not in STATIC and math.isfinite(v)}
-    damping = {n: v for n, v in known.items() if n in DAMPING}
-    controls = {n: v for n, v in known.items() if n not in DAMPING and n.split("_")[0] in COEFFICIENTS}
-    all_known = Derivatives(**static, **damping, controls=controls)
+    all_known = _derivatives(values)
     system = linearise(point, vehicle.mass, vehicle.reference, all_known, settings.form)
     modes = identify(system)
     weight = vehicle.mass.mass * STANDARD_GRAVITY
-    n_alpha = load_factor_slope(static["CL_alpha"], point.dynamic_pressure, vehicle.reference.area, weight)
+    n_alpha = load_factor_slope(values["CL_alpha"], point.dynamic_pressure, vehicle.reference.area, weight)
     verdicts = assess(modes, settings.vehicle_class, settings.category, n_alpha)
     model = (point, vehicle.mass, vehicle.reference, all_known)
     airframe = Airframe(*model, *_trim(base, index, settings))
@@ -128,6 +125,15 @@ def fly(
         sensitivities=of_model(*model, system.A, modes, settings.form),
         control=controllability(airframe, system, asdict(settings.deflections), settings.feedback, *judged),
     )
+
+
+def _derivatives(values: Mapping[str, float]) -> Derivatives:
+    """Those that are known; the static ones all are."""
+    static = {name: values[name] for name in STATIC}
+    known = {n: v for n, v in values.items() if n not in STATIC and math.isfinite(v)}
+    damping = {n: v for n, v in known.items() if n in DAMPING}
+    controls = {n: v for n, v in known.items() if n not in DAMPING and n.split("_")[0] in COEFFICIENTS}
+    return Derivatives(**static, **damping, controls=controls)
 
 
 def _trim(base: xr.Dataset, index: int, settings: AnalyseSettings) -> tuple[float | None, float]:

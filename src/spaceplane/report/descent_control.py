@@ -135,7 +135,7 @@ def _demands(records: dict[str, dict]) -> Table:
     kinds = {one.name: one for record in records.values() for one in say.asked(record["disturbances"])}
     columns = ["Mach"]
     for name, one in kinds.items():
-        columns += [f"{name}, kN m"] if one.thruster else [f"{name}, deg", "to the limit, deg", "rate, deg/s"]
+        columns += [f"{name}, kN m"] if one.thruster else [f"{name}, deg", "left, deg", "rate, deg/s"]
     rows = []
     for mach, record in records.items():
         peaks, cells = {one.name: one for one in say.asked(record["disturbances"])}, []
@@ -148,11 +148,11 @@ def _demands(records: dict[str, dict]) -> Table:
     aim = "stabilises and no more" if decay == 0.0 else f"makes everything decay at {decay:g} 1/s or faster"
     note = (
         f"The linear quadratic regulator of least effort, which {aim}. The most over {first['horizon_s']:g} s after "
-        f"each of: {events}. Gusts are sharp-edged and stay. Rate limit {rate:.3g} deg/s, an assumption; an offset "
-        "asks for a deflection at once, the rate is that of the time after. Thrusters have no known limit. For "
-        "saturation: the moment of a thruster that supplies what a surface at its limit lacks."
+        f"each of: {events}. Gusts are sharp-edged and stay. Left: to the nearer limit. Rate limit {rate:.3g} deg/s, "
+        "an assumption; an offset asks for a deflection at once, the rate is that of the time after. Thrusters have no "
+        "known limit. For saturation: the moment of a thruster that supplies what a surface at its limit lacks."
     )
-    columns += ["for saturation", "within limits"]
+    columns += ["for saturation", "limits kept"]
     return Table("What the feedback asks", 3, note, tuple(columns), tuple(rows))
 
 
