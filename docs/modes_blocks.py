@@ -16,6 +16,7 @@ import xarray as xr
 
 from spaceplane.aero.model.derivatives import Derivatives
 from spaceplane.aero.model.published import horus_2b_published
+from spaceplane.analysis.descent import Descent, DescentSettings, descend
 from spaceplane.control.authority import Authority, authority
 from spaceplane.control.closed_loop import close
 from spaceplane.control.disturbance import Gust, disturbed, gust_column
@@ -31,7 +32,12 @@ from spaceplane.dynamics.modes import identify
 from spaceplane.dynamics.response import doublet
 from spaceplane.dynamics.statespace import StateSpace
 from spaceplane.dynamics.tracking import Branches, follow
+from spaceplane.dynamics.trim.longitudinal import HORUS_2B_BODY_FLAP
 from spaceplane.qualities.assess import load_factor_slope
+from spaceplane.qualities.verdict import to_record
+from spaceplane.report import control_tables
+from spaceplane.report.control_record import control_record
+from spaceplane.vehicle import presets
 
 DOCS = Path(__file__).resolve().parent
 IMAGES = DOCS / "images" / "modes"
@@ -39,6 +45,8 @@ CASE = derivatives_file.read(DOCS.parent / "examples" / "horus_2b_taem.toml")
 TRIM = {"elevon_left": math.radians(-3.0), "elevon_right": math.radians(-3.0)}
 THRUSTER = 1e4  # N m: a round number; those of HORUS-2B are not published
 GUST = 10.0  # m/s
+DESCENT_MACHS = (1.5, 2.0, 2.5, 3.0, 5.0, 10.0)
+AXES = ("roll", "yaw")
 UNITS = {"rad": ("deg", 180 / math.pi), "rad/s": ("deg/s", 180 / math.pi)}
 
 
@@ -247,11 +255,45 @@ def rudder_run(effect: float, times: np.ndarray) -> xr.Dataset:
     excursions = {"alpha": math.radians(1), "beta": math.radians(1), "sigma": math.radians(5), "V": 20.0, "R": 500.0}
     regulator = bryson(plant, authority(["elevator", "rudder"], TRIM), excursions)
     return saturated(
-        regulator, times, gust=gust("beta", "sharp", strength=30.0), relief=takeover(plant, "rudder", "moment_z")
+        regulator, times, gust=gust("beta", "sharp", strength=30.0), reliefs=[takeover(plant, "rudder", "moment_z")]
     )
 
 
+@cache
+def descent() -> Descent:
+    """The published tables along some of their Mach numbers."""
+    return descend(
+        horus_2b_published(), presets.horus_2b().mass, DescentSettings(DESCENT_MACHS, body_flap=HORUS_2B_BODY_FLAP)
+    )
+
+
+def descent_table() -> str:
+    """By Mach number: the fastest growth, what is held, what the feedback asks and the levels."""
+    rows = []
+    for one in descent().points:
+        record = control_record(one.control, histories=False)
+        asked = {peak.name: peak for peak in control_tables.asked(record["disturbances"])}
+        elevons = asked["elevons"]
+        moments = (f"{max(-asked[f'{axis} thruster'].least, asked[f'{axis} thruster'].greatest):.2f}" for axis in AXES)
+        before = control_tables.worst_text(control_tables.open_verdicts([to_record(v) for v in one.verdicts]))
+        rows.append(
+            (
+                f"{one.point.mach:g}",
+                f"{max(mode['eigenvalue'][0] for mode in record['modes']):.3f}",
+                control_tables.held_text(record, "alpha"),
+                control_tables.range_text(elevons),
+                f"{elevons.rate:.1f}",
+                *moments,
+                before,
+                control_tables.worst_text(record["closed_loop"]["verdicts"]),
+            )
+        )
+    head = ("Mach", "fastest growth, 1/s", "alpha held, deg", "elevons, deg", "rate, deg/s", "M_x, kN m", "M_z, kN m")
+    return table((*head, "worst level, controls fixed", "with feedback"), rows)
+
+
 BLOCKS: dict[str, Callable[[], str]] = {
+    "control descent": descent_table,
     "modes along stiffness": stiffness_events,
     "modes along bank": bank_names,
     "control reach": reach,
@@ -264,6 +306,7 @@ BLOCKS: dict[str, Callable[[], str]] = {
 
 def pictures() -> dict[str, bytes]:
     """{name: PNG}."""
+    from spaceplane.report.control_figures import motions
     from spaceplane.report.figures_dynamics import over_parameter, phasors, responses, root_locus
 
     plant = system()
@@ -274,6 +317,7 @@ def pictures() -> dict[str, bytes]:
     free = {"upright, C_m_alpha = -0.1": doublet(system(0.0, Cm_alpha=-0.1), "elevator", math.radians(1), 2.0, times)}
     free["bank 55 deg, published C_m_alpha"] = doublet(plant, "elevator", math.radians(1), 2.0, times)
     low, high = elevator().low[0], elevator().high[0]
+    fastest = next(one for one in descent().points if one.point.mach == 2.5)
     return {
         "root_locus_stiffness": root_locus(
             along_stiffness(), [(-1.6, 1.6, 2.0), (-0.12, 0.16, 0.06)], "C_m_alpha, 1/rad"
@@ -281,6 +325,7 @@ def pictures() -> dict[str, bytes]:
         "along_stiffness": over_parameter(along_stiffness(), "C_m_alpha, 1/rad", (-0.6, 0.6)),
         "root_locus_bank": root_locus(along_bank(), [(-1.3, 1.3, 1.6), (-0.10, 0.05, 0.045)], "bank angle, deg"),
         "phasors": phasors(shown, CASE.point.velocity),
+        "descent_responses": motions(control_record(fastest.control)["responses"]),
         "doublet": responses(free, ["alpha", "q", "V", "elevator"]),
         "gust": responses(gusted, ["alpha", "q", "elevator", "elevator_rate"], {"elevator": (low, high)}),
     }

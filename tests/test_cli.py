@@ -18,9 +18,10 @@ from spaceplane.commands.arguments import fraction, spread_assignments
 from spaceplane.errors import InputError
 
 COMMANDS = (
-    *("analyse", "geometry", "flow", "fly", "modes", "compare", "report", "validate", "export"),
+    *("analyse", "database", "geometry", "flow", "fly", "modes", "compare", "report", "validate", "export"),
     "study sensitivity",
 )
+TAEM = Path(__file__).parents[1] / "examples" / "horus_2b_taem.toml"
 FLOW = ["--area", "1", "--length", "1", "--span", "1", "--moment-center", "0,0,0"]
 PUBLISHED = "horus-2b-published"
 HEAD = "alpha_deg,M2,M3\n"
@@ -969,3 +970,36 @@ def test_unconverged_results_are_written_but_exit_with_1(capfd, analysed, tmp_pa
     code, _, err = run(capfd, "compare", tmp_path / "result.json", tmp_path / "result.json")
     assert code == 1
     assert "not good: Mach 2.5: flow oscillating" in err
+
+
+@pytest.mark.parametrize(
+    ("options", "naming"),
+    [
+        (["--gust", "strong"], "--gust: 'strong' is not a number (m/s)"),
+        (["--gust", "0"], "gust = 0 m/s: above 0 and at most 100 m/s"),
+        (["--offset", "25"], "offset = 25 deg: above 0 and at most 20 deg"),
+        (["--offset", "nan"], "--offset"),
+        (["--decay", "-1"], "decay = -1 1/s: 0 or above and at most 10 1/s"),
+        (["--no-control", "--gust", "9"], "--gust: has no effect without --control"),
+    ],
+)
+def test_a_feedback_is_asked_with_sense(capfd, tmp_path, options, naming):
+    refused(capfd, "fly", "horus-2b-published", "--mach", "2.5", "--out", tmp_path, *options, naming=naming)
+    if "--no-control" not in options:
+        refused(capfd, "modes", TAEM, "--control", *options, naming=naming)
+        refused(capfd, "modes", TAEM, *options, naming=options[0])
+
+
+def test_modes_say_what_the_controls_can_do(capfd):
+    """Without known surfaces thrusters do it: the moment goes with the offset, and comes with --control alone."""
+    found = {}
+    for offset in ("1", "2"):
+        code, out, _ = run(capfd, "modes", TAEM, "--control", "--offset", offset, "--json", "-")
+        assert code == 0
+        efforts = json.loads(out)["control"]["disturbances"][0]["efforts"]
+        found[offset] = next(-one["least"] for one in efforts if one["name"] == "moment_y")
+    assert found["2"] == pytest.approx(2.0 * found["1"], rel=1e-9)
+    assert found["1"] == pytest.approx(27385.0, rel=1e-3)
+    assert "control" not in json.loads(run(capfd, "modes", TAEM, "--json", "-")[1])
+    text = run(capfd, "modes", TAEM, "--control")[1]
+    assert "no pitching moment of the elevator is known" in " ".join(text.split())

@@ -14,6 +14,7 @@ from spaceplane.aero.conditions import DerivativeSteps
 from spaceplane.aero.database import AeroDatabase
 from spaceplane.aero.increments.settings import VISCOUS, IncrementSettings
 from spaceplane.analysis import aerodynamics
+from spaceplane.analysis.feedback_settings import FeedbackSettings
 from spaceplane.errors import InputError
 from spaceplane.flow import adapt
 from spaceplane.flow.freestream import direction
@@ -98,6 +99,12 @@ def test_result_holds_the_whole_chain(written):
         for verdict in (*point["verdicts"], *point["airframe_verdicts"]):
             assert sum(verdict["probabilities"].values()) == pytest.approx(1.0)
         assert all(min(mode["eigenvalue_error"]) >= 0 and mode["drivers"] for mode in point["modes"])
+        control = point["control"]
+        assert control["surfaces"] == ["elevator", "aileron", "rudder"] and not control["thrusters"]
+        growing = any(mode["eigenvalue"][0] > 0 for mode in point["modes"])
+        assert bool(np.any(control["gain"])) == growing  # a stable vehicle needs no feedback
+        closed = [mode["eigenvalue"][0] for mode in control["closed_loop"]["modes"]]
+        assert len(control["responses"]) == 5 and max(closed) <= 0.0
         parts = point["coefficients_by_part"]
         for name in ("CL", "CD", "CY", "Cl", "Cm", "Cn"):
             total = point["coefficients"][name]
@@ -414,6 +421,9 @@ def test_yaml_s_off_is_the_word():
         ({"steps": DerivativeSteps(alpha=0.05)}, lambda r: r["derivatives"]["CL_alpha"]["value"]),
         ({"steps": DerivativeSteps(beta=0.1)}, lambda r: r["derivatives"]["CY_beta"]["value"]),
         ({"steps": DerivativeSteps(mach_fraction=0.1)}, lambda r: r["derivatives"]["CL_M"]["step"]),
+        ({"feedback": FeedbackSettings(decay=1.0)}, lambda r: r["control"]["gain"]),
+        ({"feedback": FeedbackSettings(gust=20.0)}, lambda r: r["control"]["responses"][2]["open"]["alpha"]),
+        ({"feedback": FeedbackSettings(offset=0.1)}, lambda r: r["control"]["responses"][0]["open"]["alpha"]),
     ],
 )
 def test_every_setting_moves_what_it_should(monkeypatch, analysis, change, moved):
@@ -454,8 +464,10 @@ def test_settings_survive_a_round_trip_through_plain_values():
             },
             "flow": {"precision": "double"},
             "increments": {"friction": "turbulent", "base": "correlation", "wall_temperature_K": 800},
+            "feedback": {"gust": 15, "offset_deg": 2, "decay": 0.3},
         }
     )
+    assert settings.feedback.offset == pytest.approx(math.radians(2.0))
     assert settings.steps.alpha == pytest.approx(math.radians(0.5))
     assert settings.control_step == pytest.approx(math.radians(4.0))
     assert settings.deflections.elevon_left == pytest.approx(math.radians(-17.5))
@@ -490,6 +502,10 @@ def test_settings_survive_a_round_trip_through_plain_values():
         ({"increments": {"friction": "laminar", "wall_temperature_K": -3}}, "wall_temperature_K = -3"),
         ({"increments": "turbulent"}, "increments"),
         ({"vehicle_class": "V"}, "vehicle_class"),
+        ({"feedback": {"gust": 0}}, "gust = 0 m/s"),
+        ({"feedback": {"gusts": 3}}, "did you mean 'feedback.gust'"),
+        ({"feedback": {"offset_deg": 30}}, "offset = 30 deg"),
+        ({"feedback": 3}, "feedback"),
         ({"control_step": 0.0}, "control_step"),
         ({"deflections": {"elevon": 3}}, "elevon"),
         ({"deflections": {"body_flap": -30}}, "body_flap"),

@@ -92,7 +92,7 @@ def test_the_page_and_the_record_are_written_whole(descent, tmp_path):
     for text in ("Trim", "Modes", "Events along the descent", "Levels of MIL-F-8785C", "data:image/png"):
         assert text in page
     assert ">nan<" not in page
-    for name in ("trim-map", "root-locus", "modes-by-mach", "eigenvectors"):
+    for name in ("trim-map", "root-locus", "modes-by-mach", "eigenvectors", "control-roots", "control-responses"):
         assert paths[name].read_bytes()[:4] == b"\x89PNG"
 
 
@@ -196,3 +196,26 @@ def test_bank_couples_and_level_flight_does_not():
         columns = [states.index(name) for name in ("p", "r", "beta", "sigma")]
         groups.append(np.abs(point.system.A[np.ix_(rows, columns)]).max())
     assert groups[0] < 1e-12 < groups[1]
+
+
+def test_the_page_says_what_the_controls_can_do(descent, tmp_path):
+    """Elevator alone is published: thrusters stand in for roll and yaw; nothing grows fast at Mach 10."""
+    paths = report.write(descent, tmp_path)
+    page = paths["html"].read_text()
+    for text in ("Control power", "Controllability", "What the feedback asks", "Levels with the feedback"):
+        assert f"<h3>{text}</h3>" in page
+    for text in ("The feedback uses elevator", "no yawing moment of the rudder is known", "the damping CL_q, Cm_q"):
+        assert text in page
+    assert "−34.9 to 40.2" in page  # alpha held at Mach 2.5
+    control = [point["control"] for point in json.loads(paths["json"].read_text())["points"]]
+    fastest = [max(mode["eigenvalue"][0] for mode in one["modes"]) for one in control]
+    asked = [max(abs(e["jump"]) for e in one["disturbances"][0]["efforts"] if e["unit"] == "deg") for one in control]
+    assert np.argmax(asked) == np.argmax(fastest) == 2
+    assert asked[-1] < 1e-3 and control[-1]["held_deg"]["alpha"] == [None, None]
+
+
+def test_control_is_left_out_where_nobody_asks(tmp_path):
+    found = descend(horus_2b_published(), MASS, DescentSettings((2.5,), feedback=None))
+    paths = report.write(found, tmp_path)
+    assert "Control power" not in paths["html"].read_text() and "control-roots" not in paths
+    assert json.loads(paths["json"].read_text())["points"][0]["control"] is None

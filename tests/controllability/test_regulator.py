@@ -14,7 +14,7 @@ from spaceplane.control.disturbance import Gust, disturbed, gust_column
 from spaceplane.control.effort import efforts
 from spaceplane.control.gramians import energy_to_rest
 from spaceplane.control.regulator import bryson, minimum_effort
-from spaceplane.control.saturation import saturated, takeover
+from spaceplane.control.saturation import Takeover, saturated, takeover
 from spaceplane.dynamics.equations import flight_model, state_rates
 from spaceplane.errors import InputError
 
@@ -259,7 +259,7 @@ def test_thruster_takes_over_where_the_rudder_stops():
     limit = 0.25 * float(np.abs(linear["rudder"].values).max())
     tight = Authority(("rudder",), np.array([-limit]), np.array([limit]), regulator.limits.trim)
     small = type(regulator)(regulator.kind, regulator.system, regulator.gain, tight)
-    run = saturated(small, times, {"beta": 0.05}, relief=relief)
+    run = saturated(small, times, {"beta": 0.05}, reliefs=[relief])
     assert np.allclose(run["beta"].values, linear["beta"].values, atol=1e-5)
     missing = linear["rudder"].values - np.clip(linear["rudder"].values, -limit, limit)
     assert np.allclose(run["moment_z"].values, relief.ratio * missing, atol=1e-4 * abs(relief.ratio) * limit)
@@ -280,6 +280,8 @@ def test_thruster_takes_over_where_the_rudder_stops():
         (lambda r: saturated(r, [0.0, 1.0], lag=-1.0), "lag = -1"),
         (lambda r: saturated(r, [0.0, 1.0], rate_limit=1.0), "rate_limit = 1"),
         (lambda r: takeover(r.system, "rudder", "moment_z"), "unknown input"),
+        (lambda r: saturated(r, [0.0, 1.0], reliefs=[Takeover("rudder", "moment_z", 1.0, np.zeros(9))]), "relieve"),
+        (lambda r: saturated(r, [0.0, 1.0], reliefs=2 * [Takeover("elevator", "moment_y", 1.0, np.zeros(9))]), "axis"),
         (lambda r: efforts(disturbed(r, [0.0, 1.0]), r.limits, {"flap": 1.0}), "unknown control surface"),
         (lambda r: efforts(disturbed(r, [0.0, 1.0]), r.limits, {"body_flap": 0.0}), "rate limit of body_flap"),
         (lambda r: close(r, "V"), "vehicle_class"),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import json
 import math
 from pathlib import Path
@@ -126,6 +127,20 @@ def convergence(label: str, mach: float, alpha: float, beta: float, verdict_name
     }  # fmt: skip
 
 
+@functools.cache
+def control_of() -> dict:
+    """Control of HORUS-2B at the TAEM interface with every derivative at its usual size."""
+    from tests.dynamics import horus
+
+    from spaceplane.analysis.controllability import controllability
+    from spaceplane.dynamics.linearise import linearise
+    from spaceplane.qualities.airframe import Airframe
+    from spaceplane.report.control_record import control_record
+
+    model = (horus.point(), horus.MASS, horus.REFERENCE, horus.derivatives(**horus.EXTRA))
+    return control_record(controllability(Airframe(*model), linearise(*model), {}))
+
+
 def flight_point(name: str, mach: float, altitude: float, alpha: float) -> dict:
     def derivative(value: float, unit: str = "1/rad", step: float = 0.0175, step_unit: str = "rad") -> dict:
         shares = {"nose": 0.2, "fuselage": 0.9, "body_flap": -0.1}
@@ -191,6 +206,7 @@ def flight_point(name: str, mach: float, altitude: float, alpha: float) -> dict:
             airframe_verdict("nose-up elevator per load factor", "3.2.2.2", None, {}),
         ],
         "convergence": [convergence(*row) for row in labels],
+        "control": control_of(),
     }  # fmt: skip
 
 

@@ -11,6 +11,8 @@ import numpy as np
 
 from spaceplane.aero.model.derivatives import PAIRS
 from spaceplane.aero.model.model import AeroModel, OutsideTables
+from spaceplane.analysis.controllability import Controllability, controllability
+from spaceplane.analysis.feedback_settings import FeedbackSettings
 from spaceplane.analysis.likelihood import Likelihood, likelihood
 from spaceplane.analysis.tracked import Tracked, track
 from spaceplane.dynamics.flightpoint import TAEM_BANK_DEG, TAEM_GAMMA_DEG, FlightPoint, taem_point
@@ -55,6 +57,7 @@ class DescentSettings:
         uncertainty: errors of derivatives, C_L and C_D, for probabilities of levels; empty for none.
         correlation: pairs of uncertain names to coefficient of correlation, -1 to 1.
         samples: draws at each flight point.
+        feedback: what a stabilising feedback is put to; None leaves it out.
 
     Raises:
         InputError: Mach numbers that do not increase or lie outside the descent of the thesis, an angle or number of
@@ -71,6 +74,7 @@ class DescentSettings:
     uncertainty: Mapping[str, GivenError] = field(default_factory=dict)
     correlation: Mapping[tuple[str, str], float] = field(default_factory=dict)
     samples: int = SAMPLES
+    feedback: FeedbackSettings | None = field(default_factory=FeedbackSettings)
 
     def __post_init__(self) -> None:
         machs = np.asarray(self.machs, dtype=float)
@@ -103,6 +107,7 @@ class DescentPoint:
         modes, verdicts: of it.
         reason: why there is no trim or no linear model; empty where there is.
         likelihood: what moves the modes and how certain they are; None without a linear model.
+        control: what the controls can do; None without a linear model or where none was asked for.
     """
 
     point: FlightPoint
@@ -112,6 +117,7 @@ class DescentPoint:
     verdicts: tuple[Verdict, ...] = ()
     reason: str = ""
     likelihood: Likelihood | None = None
+    control: Controllability | None = None
 
 
 @dataclass(frozen=True)
@@ -189,10 +195,20 @@ def _at(model: AeroModel, mass: MassProperties, point: FlightPoint, settings: De
     except OutsideTables as error:
         return DescentPoint(point, trim, reason=f"outside the tables: {error}")
     airframe = Airframe(point, mass, model.reference, derivatives, 0.0, trim.elevator)
-    assessed = assess_all(airframe, settings.vehicle_class, settings.category, settings.form)
-    judged = (settings.vehicle_class, settings.category, settings.form)
-    certain = likelihood(airframe, assessed, settings.uncertainty, *judged, settings.samples, settings.correlation)
-    return DescentPoint(point, trim, assessed.system, assessed.modes, assessed.verdicts, likelihood=certain)
+    judged = (settings.vehicle_class, settings.category)
+    assessed = assess_all(airframe, *judged, settings.form)
+    asked = settings.feedback
+    return DescentPoint(
+        point,
+        trim,
+        assessed.system,
+        assessed.modes,
+        assessed.verdicts,
+        likelihood=likelihood(
+            airframe, assessed, settings.uncertainty, *judged, settings.form, settings.samples, settings.correlation
+        ),
+        control=controllability(airframe, assessed.system, deflections, asked, *judged) if asked else None,
+    )
 
 
 def _check_errors(errors: Mapping[str, GivenError], model: AeroModel) -> None:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING
 
 from spaceplane.aero.integrate import TOTAL
 from spaceplane.aero.model.derivatives import COEFFICIENTS, DAMPING, STATIC, Derivatives
 from spaceplane.aero.uncertainty.settings import MESH
+from spaceplane.analysis.controllability import Controllability, controllability
 from spaceplane.analysis.settings import AnalyseSettings
 from spaceplane.dynamics.flightpoint import AngularRates, FlightPoint, equilibrium_rates
 from spaceplane.dynamics.linearise import linearise
@@ -46,6 +48,7 @@ class PointAnalysis:
         uncertainty: of the derivatives, from their stated errors; None without any.
         outlooks: the verdicts' probabilities; empty without uncertainty.
         sensitivities: of the modes, in their order.
+        control: what the controls can do, from the deflections that were solved; None without a linear model.
     """
 
     point: FlightPoint
@@ -59,6 +62,7 @@ class PointAnalysis:
     uncertainty: Uncertainty | None = None
     outlooks: tuple[Outlook, ...] = ()
     sensitivities: tuple[ModeSensitivity, ...] = ()
+    control: Controllability | None = None
 
 
 def fly(
@@ -96,15 +100,11 @@ def fly(
     if missing:
         reason = f"no linear model: {', '.join(missing)} rest on a condition that failed"
         return PointAnalysis(point, validity, rates, None, (), (), reason)
-    static = {name: values[name] for name in STATIC}
-    known = {n: v for n, v in values.items() if n not in STATIC and math.isfinite(v)}
-    damping = {n: v for n, v in known.items() if n in DAMPING}
-    controls = {n: v for n, v in known.items() if n not in DAMPING and n.split("_")[0] in COEFFICIENTS}
-    all_known = Derivatives(**static, **damping, controls=controls)
+    all_known = _derivatives(values)
     system = linearise(point, vehicle.mass, vehicle.reference, all_known, settings.form)
     modes = identify(system)
     weight = vehicle.mass.mass * STANDARD_GRAVITY
-    n_alpha = load_factor_slope(static["CL_alpha"], point.dynamic_pressure, vehicle.reference.area, weight)
+    n_alpha = load_factor_slope(values["CL_alpha"], point.dynamic_pressure, vehicle.reference.area, weight)
     verdicts = assess(modes, settings.vehicle_class, settings.category, n_alpha)
     model = (point, vehicle.mass, vehicle.reference, all_known)
     airframe = Airframe(*model, *_trim(base, index, settings))
@@ -123,7 +123,17 @@ def fly(
         uncertainty=uncertainty,
         outlooks=outlooks(airframe, uncertainty, *judged, samples=SAMPLES, form=settings.form) if uncertainty else (),
         sensitivities=of_model(*model, system.A, modes, settings.form),
+        control=controllability(airframe, system, asdict(settings.deflections), settings.feedback, *judged),
     )
+
+
+def _derivatives(values: Mapping[str, float]) -> Derivatives:
+    """Those that are known; the static ones all are."""
+    static = {name: values[name] for name in STATIC}
+    known = {n: v for n, v in values.items() if n not in STATIC and math.isfinite(v)}
+    damping = {n: v for n, v in known.items() if n in DAMPING}
+    controls = {n: v for n, v in known.items() if n not in DAMPING and n.split("_")[0] in COEFFICIENTS}
+    return Derivatives(**static, **damping, controls=controls)
 
 
 def _trim(base: xr.Dataset, index: int, settings: AnalyseSettings) -> tuple[float | None, float]:

@@ -10,6 +10,7 @@ from typing import Any
 from spaceplane.aero.conditions import DerivativeSteps
 from spaceplane.aero.increments.settings import VISCOUS, IncrementSettings, require_no_friction
 from spaceplane.aero.uncertainty.settings import LOOSEST, MESH, SOURCES, TIGHTEST
+from spaceplane.analysis.feedback_settings import FeedbackSettings
 from spaceplane.dynamics.flightpoint import TAEM_MACH, FlightPoint, taem_point
 from spaceplane.dynamics.linearise import FORMS
 from spaceplane.errors import InputError, unknown_name
@@ -120,6 +121,7 @@ class AnalyseSettings:
         form: form of the linear model.
         vehicle_class: class of MIL-F-8785C.
         category: flight phase category of MIL-F-8785C.
+        feedback: what a stabilising feedback is put to.
     """
 
     mach: tuple[float, ...] = TAEM_MACH
@@ -141,6 +143,7 @@ class AnalyseSettings:
     form: str = "rigid-body"
     vehicle_class: str = "III"
     category: str = "B"
+    feedback: FeedbackSettings = field(default_factory=FeedbackSettings)
 
     def __post_init__(self) -> None:
         if not self.mach:

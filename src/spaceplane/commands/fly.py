@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from spaceplane.commands import options, sources
+from spaceplane.commands import feedback, options, sources
 from spaceplane.commands.arguments import count, mach_numbers, number, numbers, writable_file, write_json
 from spaceplane.commands.progress import progress_bar
 from spaceplane.errors import InputError
@@ -69,10 +69,14 @@ def fly(
     samples: Annotated[
         str | None, typer.Option("--samples", metavar="N", help="Draws for them at each flight point; 1000 by default.")
     ] = None,
+    control: feedback.Control = True,
+    gust: feedback.Gust = None,
+    offset: feedback.Offset = None,
+    decay: feedback.Decay = None,
     out: Annotated[Path, typer.Option("--out", metavar="DIR", help="Folder to write into.")] = Path("out/fly"),
     json_file: options.JsonFile = None,
 ) -> int:
-    """Trim map, trimmed flight points, modes followed along the Mach number, levels and a page of it all.
+    """Trim map, trimmed flight points, modes followed along the Mach number, levels, control and a page of it all.
 
     Exit code 1 when no flight point could be trimmed, 2 for bad input.
     """
@@ -85,6 +89,7 @@ def fly(
     center = None if center_of_mass is None else numbers("--center-of-mass", center_of_mass, "m", 3)
     if samples is not None:
         given["samples"] = count("--samples", samples, "draws")
+    given["feedback"] = feedback.settings(control, gust, offset, decay)
     writable_file(json_file, "--json")
     from spaceplane.analysis.descent import DescentSettings, descend
     from spaceplane.decks.source import PUBLISHED

@@ -76,7 +76,7 @@ def saturated(
     gust: Gust | None = None,
     rate_limit: float = math.inf,
     lag: float = 0.0,
-    relief: Takeover | None = None,
+    reliefs: Sequence[Takeover] = (),
 ) -> xr.Dataset:
     """Response of the closed loop with limited inputs.
 
@@ -87,14 +87,15 @@ def saturated(
         gust: or none.
         rate_limit: greatest rate of the deflections, rad/s; needs a lag.
         lag: time constant of the actuators, s, which start from trim; 0 for inputs that follow at once.
-        relief: a thruster that takes over what one of the inputs lacks.
+        reliefs: thrusters that take over what inputs lack, one about each axis.
 
     Returns:
-        Dims (time): states, inputs, with relief its moment (N m). Attributes `held` (1 if the unstable part of the
+        Dims (time): states, inputs, the moment of each relief (N m). Attributes `held` (1 if the unstable part of the
         motion ends below a tenth of its peak: give it time) and `until` (s; earlier than asked if it is lost for good).
 
     Raises:
-        InputError: unknown states, bad times, a rate limit or lag that is none, a relief of another input.
+        InputError: unknown states, bad times, a rate limit or lag that is none, a relief of another input, two
+            reliefs about one axis.
     """
     import xarray as xr
 
@@ -105,30 +106,30 @@ def saturated(
         raise InputError(f"lag = {lag}: must be 0 s or above")
     if not rate_limit > 0 or (math.isfinite(rate_limit) and lag == 0):
         raise InputError(f"rate_limit = {rate_limit}: must be above 0 rad/s, and needs a lag above 0 s")
-    if relief is not None and relief.control not in plant.inputs:
-        raise InputError(unknown_name("input to relieve", relief.control, plant.inputs))
+    for relief in reliefs:
+        if relief.control not in plant.inputs:
+            raise InputError(unknown_name("input to relieve", relief.control, plant.inputs))
+    if len({relief.moment for relief in reliefs}) < len(reliefs):
+        raise InputError(f"reliefs = {', '.join(relief.moment for relief in reliefs)}: one about each axis is allowed")
     start = np.concatenate([checked_state(plant, offsets or {}), np.zeros(m if lag > 0 else 0)])
     fastest = np.array([math.inf if name in MOMENT_INPUTS else rate_limit for name in plant.inputs])
-    relieved = None if relief is None else plant.inputs.index(relief.control)
+    relieved = [plant.inputs.index(relief.control) for relief in reliefs]
+    ratios = np.array([relief.ratio for relief in reliefs])
+    columns = np.array([relief.column for relief in reliefs]).reshape(len(reliefs), n)
 
-    def actual(y: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
-        """(what is wanted, what the inputs give, thruster moment)."""
+    def actual(y: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """(what is wanted, what the inputs give, [relief] thruster moments)."""
         wanted = -K @ y[:n]
         given = np.clip(y[n:] if lag > 0 else wanted, limits.low, limits.high)
-        moment = 0.0
-        if relief is not None:
-            lacking = wanted[relieved] - np.clip(wanted[relieved], limits.low[relieved], limits.high[relieved])
-            moment = relief.ratio * float(lacking)
-        return wanted, given, moment
+        lacking = wanted - np.clip(wanted, limits.low, limits.high)
+        return wanted, given, ratios * lacking[relieved]
 
     def rates(t: float, y: np.ndarray) -> np.ndarray:
         """Time derivatives with the inputs that the limits leave."""
-        wanted, given, moment = actual(y)
-        x = plant.A @ y[:n] + plant.B @ given
+        wanted, given, missing = actual(y)
+        x = plant.A @ y[:n] + plant.B @ given + missing @ columns
         if gust is not None:
             x = x + gust.column * gust.at(t)
-        if relief is not None:
-            x = x + relief.column * moment
         if lag == 0:
             return x
         goal = np.clip(wanted, limits.low, limits.high)
@@ -150,8 +151,8 @@ def saturated(
     variables = {name: ("time", run.y[k], {"units": unit_of(name)}) for k, name in enumerate(plant.states)}
     for k, name in enumerate(plant.inputs):
         variables[name] = ("time", np.array([given[k] for _, given, _ in found]), {"units": unit_of(name)})
-    if relief is not None:
-        variables[relief.moment] = ("time", np.array([moment for *_, moment in found]), {"units": "N m"})
+    for k, relief in enumerate(reliefs):
+        variables[relief.moment] = ("time", np.array([missing[k] for *_, missing in found]), {"units": "N m"})
     growing = np.linalg.norm(part.rows @ run.y[:n], axis=0) if len(part.A) else np.zeros(len(run.t))
     held = run.status == 0 and bool(growing[-1] <= 0.1 * growing.max(initial=0.0))
     return xr.Dataset(

@@ -13,8 +13,9 @@ from spaceplane.dynamics.modes import Mode
 from spaceplane.files import json_text, renamed_when_done, told, write_text
 from spaceplane.plain import finite
 from spaceplane.qualities.verdict import Verdict
-from spaceplane.report import descent_likelihood
+from spaceplane.report import descent_control, descent_likelihood
 from spaceplane.report.branches import event_record
+from spaceplane.report.control_record import control_record
 from spaceplane.report.figures_dynamics import over_parameter, phasors, root_locus
 from spaceplane.report.plain_page import Table, document, picture_html, table_html
 from spaceplane.report.read import level_text
@@ -88,6 +89,7 @@ def _point_record(one: DescentPoint) -> dict:
             "Cm_alpha": finite(trim.static.Cm_alpha),
         },
         **descent_likelihood.point_record(one),
+        "control": control_record(one.control, histories=False),
     }
 
 
@@ -102,7 +104,7 @@ def pictures(descent: Descent) -> dict[str, bytes]:
     flown = [one for one in descent.points if one.modes]
     if flown:
         drawn["eigenvectors"] = phasors(flown[0].modes, flown[0].point.velocity)
-    return drawn | descent_likelihood.pictures(descent)
+    return drawn | descent_likelihood.pictures(descent) | descent_control.pictures(descent)
 
 
 def page(descent: Descent, drawn: dict[str, bytes]) -> str:
@@ -119,7 +121,7 @@ def page(descent: Descent, drawn: dict[str, bytes]) -> str:
     for table in tables(descent):
         parts.append(table_html(table))
         parts += [picture_html(drawn[name], text) for name, text in _BELOW.get(table.title, ()) if name in drawn]
-    return document(title, parts)
+    return document(title, [*parts, *descent_control.html_parts(descent, drawn)])
 
 
 EVENTS = "Events along the descent"

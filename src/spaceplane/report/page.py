@@ -20,6 +20,7 @@ NAVIGATION = (
     ("derivatives", "Derivatives"),
     ("modes", "Modes"),
     ("levels", "Levels"),
+    ("control", "Control"),
     ("convergence", "Convergence"),
     ("vehicle", "Vehicle"),
 )

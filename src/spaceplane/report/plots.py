@@ -150,7 +150,7 @@ def convergence_plot(record: dict) -> str:
     if len(residual):
         scale = Scale(*padded([*residual, 0.0], 0.06, 0.2))
         frame = Frame(left, 8, width - left - 8, 84, Scale(0, max(len(residual) - 1, 1)), scale)
-        out += [_axes_below_hidden(frame, 3), frame.line(range(len(residual)), residual, "curve residual")]
+        out += [axes_above(frame, 3), frame.line(range(len(residual)), residual, "curve residual")]
     if len(force):
         final = force[-max(len(force) // 10, 1) :].mean(axis=0)
         size = max(float(np.hypot(final[0], final[2])), 1e-12)
@@ -163,7 +163,7 @@ def convergence_plot(record: dict) -> str:
     return drawing(width, height, *out, title=f"convergence of {record.get('label', '')}")
 
 
-def _axes_below_hidden(frame: Frame, y_ticks: int) -> str:
+def axes_above(frame: Frame, y_ticks: int) -> str:
     """Axes of the upper of two stacked plots: no tick labels on x."""
     upper = Frame(frame.left, frame.top, frame.width, frame.height, Scale(0, 1, None), frame.y_scale)
     out = [f'<rect class="frame" x="{upper.left}" y="{upper.top}" width="{upper.width}" height="{upper.height}"/>']

@@ -24,6 +24,7 @@ from spaceplane.flow.solution import ConvergenceRecord
 from spaceplane.plain import degrees, plain
 from spaceplane.qualities.outlook_record import mode_records, verdict_records
 from spaceplane.report import branches
+from spaceplane.report.control_record import control_record
 from spaceplane.report.read import SCHEMA, SCHEMA_VERSION
 from spaceplane.vehicle.controls import ControlDeflections
 from spaceplane.vehicle.presets import Vehicle
@@ -276,6 +277,7 @@ def dynamics(found: PointAnalysis) -> dict:
         "verdicts": on_modes,
         "airframe_verdicts": on_airframe,
         "reason": found.reason,
+        "control": control_record(found.control),
     }
 
 

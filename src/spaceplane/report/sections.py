@@ -8,9 +8,9 @@ import json
 from markupsafe import Markup
 
 from spaceplane import __version__
-from spaceplane.report import branches
+from spaceplane.report import branches, flight_control, flight_point
 from spaceplane.report.figures_dynamics import over_parameter
-from spaceplane.report.flight_point import level_css, point
+from spaceplane.report.flight_point import level_css
 from spaceplane.report.names import COEFFICIENTS, SOURCES, meaning, split_derivative, stability, symbol, words
 from spaceplane.report.numbers import Measured, duration, fixed, grouped, is_number, measured, number, unbroken
 from spaceplane.report.plots import POINT_COLOURS, eigenvalues_together, range_bar
@@ -41,6 +41,11 @@ MESH_ROWS = (
     ("Split cells", "split_cells"),
     ("Merged cells", "merged_cells"),
 )
+
+
+def point(p: dict) -> dict:
+    """Everything the templates show about flight point `p` of result.json."""
+    return {**flight_point.point(p), "control": flight_control.control(p)}
 
 
 def whole(result: dict) -> dict:

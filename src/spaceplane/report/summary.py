@@ -15,6 +15,7 @@ from rich.text import Text
 
 from spaceplane.qualities.probability import per_cent
 from spaceplane.report.card import yaw_sentence
+from spaceplane.report.control_summary import print_control
 from spaceplane.report.flight_point import LEVEL_CSS, level_of, time_text, worst_levels
 from spaceplane.report.likelihood import SHOWN_DRIVERS, eigenvalue_error, outcome_chip
 from spaceplane.report.names import stability
@@ -219,6 +220,8 @@ def print_modes(record: dict, console: Console | None = None) -> None:
         console.print(_levels_table([{"name": "verdict", "verdicts": record["verdicts"]}]))
     if record.get("airframe_verdicts"):
         console.print(_airframe_table([{"name": "verdict", "airframe_verdicts": record["airframe_verdicts"]}]))
+    if record.get("control"):
+        print_control(record["control"], record["verdicts"], console)
 
 
 def trial_line(trial: Trial) -> str:

@@ -24,6 +24,7 @@ NUMERICAL_SOURCES = (
     "environment",
     "dynamics",
     "qualities",
+    "control",
     "analysis",
     "pipeline.py",
 )

@@ -125,11 +125,13 @@ def evaluate(inputs: dict) -> dict:
 
 
 def without_histories(result: dict) -> dict:
-    """Return a result without its convergence histories, which would be most of its size."""
+    """Return a result without its histories of convergence and motion, which would be most of its size."""
     points = []
     for point in result["flight_points"]:
         convergence = [
             {name: value for name, value in row.items() if name not in _HISTORIES} for row in point["convergence"]
         ]
-        points.append(point | {"convergence": convergence})
+        control = point.get("control")
+        control = control and {name: value for name, value in control.items() if name != "responses"}
+        points.append(point | {"convergence": convergence, "control": control})
     return result | {"flight_points": points}
