@@ -153,19 +153,21 @@ def _trims(descent: Descent) -> Table:
         "CL",
         "CD",
         "L/D",
+        "static margin",
     )
-    rows = []
+    rows, reasons = [], []
     for one in descent.points:
         start = (f"{one.point.mach:g}", f"{one.point.altitude / 1e3:.1f}", f"{math.degrees(one.point.alpha):.1f}")
         if one.trim is None:
-            rows.append((*start, one.reason, *("-",) * 6))
+            rows.append((*start, "none", *("-",) * 6))
+            reasons.append(f" Mach {one.point.mach:g}: {one.reason}.")
             continue
         t = one.trim
         angles = (f"{math.degrees(value):.1f}" for value in (t.elevator, t.body_flap, t.margin))
         forces = f"{t.CL:.3f}", f"{t.CD:.3f}", f"{t.lift_to_drag:.2f}"
         rows.append((*start, *angles, *forces, f"{100.0 * t.static.margin:+.1f} %"))
     note = "The trim with the largest margin of the elevator to its nearer limit. Outside the tables there is none."
-    return Table("Trim", 2, note, columns, tuple(rows))
+    return Table("Trim", 2, note + "".join(reasons), columns, tuple(rows))
 
 
 def _modes(descent: Descent) -> Table:
