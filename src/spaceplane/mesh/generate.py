@@ -18,6 +18,7 @@ from spaceplane.mesh.grid import Grid, boxes_in_cells, place_grid, refined
 from spaceplane.mesh.mesh import Mesh
 from spaceplane.mesh.settings import MeshSettings
 from spaceplane.mesh.sizing import Sizing, both, finer_levels, frustum_cells, round_edges, split, split_cells
+from spaceplane.mesh.square_edges import cells_at_square_edges
 from spaceplane.mesh.symmetry import is_symmetric, mirrored_parts
 from spaceplane.mesh.thickness import Thickness, cells_on_thin_walls, thickness_of
 from spaceplane.mesh.walls import fine_parts, fine_walls, join_coarse_walls, wall_sizes
@@ -160,6 +161,8 @@ def _with_edges(surface: Surface, settings: MeshSettings, half: bool, sizing: Si
         smallest *= 0.5
         edges = round_edges(mesh)
         thin = cells_on_thin_walls(walls, smallest, settings.wall_cell)
+        if settings.edge_cells:
+            thin = both(thin, cells_at_square_edges(surface, walls, settings.edge_cells, smallest, settings.wall_cell))
         if not edges.any() and not len(thin.cell):
             break
         mesh, walls = _generate(surface, settings, half, both(split(mesh, edges), thin))

@@ -24,6 +24,7 @@ def check_passes(field: str, passes: int) -> int:
 
 
 MOST_EDGE_LEVELS = 4
+MOST_EDGE_CELLS = 16.0
 """Times that cells at edges may be halved."""
 
 
@@ -62,6 +63,8 @@ class MeshSettings:
         edge_levels: how many times cells are halved where air connects the two sides of a thin wall round its edge
             within a cell (the wall turns by more than 120 degrees there), so that one pressure acts on both sides, and
             where the body is thinner than 0.45 of the cell, as towards a sharp edge.
+        edge_cells: least cells across the thickness of a thin wall at its square edges, such as those of a plate, as
+            far as `edge_levels` halvings give them; 0 asks for none.
         boxes: refinement boxes, for air and walls; mirrored on a body meshed as half and mirror image.
         frustums: refinement in truncated cones, as in the air between a slender body and its shock, for air and walls;
             mirrored likewise.
@@ -81,6 +84,7 @@ class MeshSettings:
     fine_parts: tuple[str, ...] = ()
     fine_edges: bool = False
     edge_levels: int = 0
+    edge_cells: float = 0.0
     boxes: tuple[RefinementBox, ...] = ()
     frustums: tuple[RefinementFrustum, ...] = ()
     symmetric: bool | None = None
@@ -109,6 +113,8 @@ class MeshSettings:
                 raise InputError(f"{name}: {getattr(self, name)}, must be at least 1")
         if not 0 <= self.edge_levels <= MOST_EDGE_LEVELS:
             raise InputError(f"edge_levels: {self.edge_levels}, allowed 0 to {MOST_EDGE_LEVELS}")
+        if not 0.0 <= self.edge_cells <= MOST_EDGE_CELLS:
+            raise InputError(f"edge_cells: {self.edge_cells}, allowed 0 to {MOST_EDGE_CELLS:g}")
         if not 0.0 <= self.merge_fraction <= 0.9:
             raise InputError(f"merge_fraction: {self.merge_fraction}, allowed 0 to 0.9")
         if self.domain is not None and not all(low < high for low, high in zip(*self.domain, strict=True)):
