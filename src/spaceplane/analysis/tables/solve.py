@@ -21,7 +21,7 @@ from spaceplane.aero.increments.settings import Air
 from spaceplane.aero.integrate import TOTAL
 from spaceplane.aero.model.model import SLOPES
 from spaceplane.analysis.settings import AnalyseSettings
-from spaceplane.analysis.tables.settings import EULER, FAST, TableSettings
+from spaceplane.analysis.tables.settings import EULER, FAST, TableSettings, default_settings
 from spaceplane.environment.atmosphere import Ambient, us1976
 from spaceplane.flow.settings import check
 from spaceplane.plain import degrees, finite, plain
@@ -119,17 +119,15 @@ def evaluate(inputs: dict) -> dict:
     """
     steps = {"beta": math.radians(inputs["beta_step_deg"]), "rate": inputs["rate_step"]}
     given: dict[str, Any] = {"method": inputs["method"]} if inputs["tier"] == FAST else _solver(inputs)
-    # A block may hold one Mach number, a table has two or more.
-    machs = tuple(inputs["machs"])
-    settings = TableSettings(
-        tier=inputs["tier"],
-        machs=machs if len(machs) > 1 else (machs[0], 1.001 * machs[0]),
+    # Mach numbers and deflection are those of the block, not of a table.
+    settings = default_settings(
+        inputs["tier"],
         alphas=tuple(math.radians(a) for a in inputs["alphas_deg"]),
         deflections={},
         steps=replace(AnalyseSettings().steps, **steps),
         **given,
     )
-    block = Block(inputs["surface"], math.radians(inputs["deflection_deg"]), machs)
+    block = Block(inputs["surface"], math.radians(inputs["deflection_deg"]), tuple(inputs["machs"]))
     # The flow about a shape knows no mass.
     unused = MassProperties(1.0, 1.0, 1.0, 1.0)
     reference = ReferenceLengths(**inputs["reference"])
