@@ -129,9 +129,14 @@ def test_cold_flow_is_the_perfect_gas():
 
 @pytest.fixture(scope="module")
 def hot_sphere():
-    """Mach 10 and 20 past a sphere, upright and with the wind from either side."""
+    """Mach 10 and 20 past a sphere, upright and with the wind from either side.
+
+    Four decades: after three the wake at Mach 20 still moves, and how far it got depends on the processor's rounding
+    (0.018 to 0.021 of the enthalpy's error; after four 0.0185 to 0.0188).
+    """
     streams = in_air([10.0, 20.0, 10.0, 10.0], alpha_deg=[0.0, 0.0, 0.0, 0.0], beta_deg=[0.0, 0.0, 12.0, -12.0])
-    return solve(sphere(24, 8, far=3.0), streams, FlowSettings(coarse_levels=1))
+    deep = FlowSettings(coarse_levels=1, residual_drop=4.0, least_drop=3.0, iterations=300)
+    return solve(sphere(24, 8, far=3.0), streams, deep)
 
 
 def test_hot_sphere_is_steady_with_constant_total_enthalpy(hot_sphere):
