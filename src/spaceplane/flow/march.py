@@ -15,7 +15,7 @@ from spaceplane.flow.freezing import Freezer
 from spaceplane.flow.history import History
 from spaceplane.flow.settings import FlowSettings
 
-ACCELERATED_BELOW_MACH, ACCELERATED_AFTER_DROP = 2.0, 2.0
+ACCELERATED_BELOW_MACH, ACCELERATED_AFTER_DROP = 2.0, 2.3
 """Anderson acceleration drives blunt-base flows apart at Mach 2.5 and more, until they are close to steady."""
 
 WORTH_WAITING = 0.1
@@ -25,7 +25,7 @@ PATIENCE, PATIENT_FROM_MACH = (2, 8), 1.2
 """Those windows, below and from this Mach number on. Slower flows have base wakes that may never come to rest; faster
 ones do, though some stand still at two decades and a half for fifty iterations before they go on falling."""
 
-FORMED_AT, FORMING_CFL, FORMING_GROWTH = 1.7, 40.0, 1.3
+FORMED_AT, FORMING_CFL, FORMING_GROWTH = 1.7, 80.0, 1.3
 """Decades at which a supersonic flow counts as formed; CFL number and its growth from one step to the next until then,
 from Mach 2.5 on: bolder steps throw wakes about that must then come to rest, if they do not break."""
 

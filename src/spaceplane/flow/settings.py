@@ -35,7 +35,7 @@ class FlowSettings:
         wall_stiffness: share of the acoustic response to flow through the wall added to the wall pressure (0 to 1).
         cfl_start: first pseudo-time CFL number; falls to 5 between Mach 2 and 2.5. The impulsive start on the coarsest
             level uses a fifth of it, falling to 1 between Mach 2 and 5.
-        cfl_max: largest CFL number; falls to 60 at Mach 5 and to 20 from Mach 10 on, and from Mach 2.5 on it is 40
+        cfl_max: largest CFL number; falls to 60 at Mach 5 and to 20 from Mach 10 on, and from Mach 2.5 on it is 80
             until the residual has fallen 1.7 decades.
         sweeps: symmetric Gauss-Seidel sweeps per iteration.
         anderson_depth: earlier iterates combined by Anderson acceleration, at most three from Mach 1.2 up; 0 switches

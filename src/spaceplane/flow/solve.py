@@ -65,7 +65,6 @@ def solve(
     boldest = BOLDEST[conditions.gas]
     first = Caution(min(settings.cfl_start, boldest), min(settings.cfl_max, boldest))
     second = Caution(min(5.0, settings.cfl_start), min(25.0, settings.cfl_max, boldest), 1.2, 0.25)
-    # Slow flows wait with a lane of their own while others share one: they begin first.
     for which in batches(np.argsort(conditions.mach, kind="stable")):
         job.run(which, first, seconds)
     retry = np.array([c for c in range(len(conditions)) if job.worth_retry(c)], dtype=int)
@@ -107,12 +106,16 @@ class _Job:
         return bool(history.failure) or (not converged(history, self.settings) and history.drop() < 0.8)
 
     def run(self, which: np.ndarray, caution: Caution, seconds: dict[str, float]) -> None:
-        """March the conditions `which` through all levels, coarse to fine."""
+        """March the conditions `which` through all levels, coarse to fine.
+
+        Those that took longest on a level begin first on the next: they need as long again, and would otherwise hold
+        the last lane alone.
+        """
         settings, start = self.settings, None
-        subset = self.conditions.take(which)
         for level, order in stages(len(self.levels.meshes), settings.order):
             began = time.perf_counter()
             mesh, topology = self.levels.meshes[level], self.topologies[level]
+            subset = self.conditions.take(which)
             ensemble = Ensemble(mesh, topology, subset, settings, order)
             if start is not None:
                 ensemble.load(start)
@@ -128,9 +131,10 @@ class _Job:
             finish = partial(self._keep, which) if last else hand_on
             stop = partial(finished, settings=settings) if last else partial(fallen, decades=1.5 if order == 1 else 2.0)
             tick = partial(self._tell, phase, settings.residual_drop if last else 2.0)
-            march(ensemble, limit, caution, stop, finish, tick, start, impulsive=start is None)
+            histories = march(ensemble, limit, caution, stop, finish, tick, start, impulsive=start is None)
+            longest = np.argsort([-len(histories[column].residual) for column in range(len(which))], kind="stable")
+            which, start = which[longest], result[:, :, longest]
             seconds[phase] = seconds.get(phase, 0.0) + time.perf_counter() - began
-            start = result
 
     def _hand_on(self, start, parent, offset, result, column, ensemble, lane, history):
         """Fill `result[:, :, column]`, where the next finer level starts from, with a lane of this one."""

@@ -12,7 +12,7 @@ from spaceplane.flow.symmetry import mirror_cells
 from spaceplane.mesh.mesh import Mesh
 
 CELLS_PER_CHUNK = 16384
-CELLS_PER_BLOCK = 256
+CELLS_PER_BLOCK = 2048
 LEAST_SHARE = 0.25
 
 
@@ -172,23 +172,32 @@ def morton_order(points: np.ndarray, spacing: float) -> np.ndarray:
     return np.argsort(key, kind="stable")
 
 
+def starts(keys: np.ndarray, groups: int) -> np.ndarray:
+    """[groups + 1] where each group begins, of rows sorted by key."""
+    return np.concatenate([[0], np.cumsum(np.bincount(keys, minlength=groups))])
+
+
 def group(keys: np.ndarray, groups: int) -> tuple[np.ndarray, np.ndarray]:
     """(start [groups + 1], rows): rows sorted by key, stable."""
-    rows = np.argsort(keys, kind="stable")
-    return np.concatenate([[0], np.cumsum(np.bincount(keys, minlength=groups))]), rows
+    return starts(keys, groups), np.argsort(keys, kind="stable")
 
 
-def least_squares(center: np.ndarray, start: np.ndarray, other: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Coefficients [entry, xyz] of the gradient and the reciprocal condition number [cell] of its matrix.
+def least_squares(
+    center: np.ndarray, own: np.ndarray, start: np.ndarray, other: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Coefficients [entry, xyz] of the gradients in the cells `own` [row] and the reciprocal condition number [row] of
+    their matrices.
 
     Weights 1/distance^2 in the normal equations. Directions that the neighbours do not span get no gradient.
     """
-    cells = len(start) - 1
-    row = np.repeat(np.arange(cells), np.diff(start))
-    d = center[other] - center[row]
+    rows = len(own)
+    row = np.repeat(np.arange(rows), np.diff(start))
+    d = center[other] - center[own][row]
     weight = 1.0 / np.einsum("ij,ij->i", d, d)
-    product = (d[:, :, None] * d[:, None, :] * weight[:, None, None]).reshape(-1, 9)
-    matrix = np.stack([np.bincount(row, product[:, k], cells) for k in range(9)], axis=1).reshape(-1, 3, 3)
+    matrix = np.empty((rows, 3, 3))
+    for a in range(3):
+        for b in range(a, 3):
+            matrix[:, a, b] = matrix[:, b, a] = np.bincount(row, d[:, a] * d[:, b] * weight, rows)
     values, vectors = np.linalg.eigh(matrix)
     largest = np.maximum(values[:, 2], 1e-300)
     quality = np.maximum(values[:, 0], 0.0) / largest
@@ -202,24 +211,22 @@ def gradient_stencil(
     center: np.ndarray, start: np.ndarray, other: np.ndarray, few: np.ndarray
 ) -> tuple[np.ndarray, ...]:
     """(start, other, coefficients): face neighbours; where they are `few` [cell] or span space badly, theirs too."""
-    weight, quality = least_squares(center, start, other)
+    weight, quality = least_squares(center, np.arange(len(center)), start, other)
     poor = np.flatnonzero((quality < 0.1) | few)
     if not len(poor):
         return start, other, weight
     cells = len(center)
     graph = sparse.csr_matrix((np.ones(len(other), dtype=np.int8), other, start), shape=(cells, cells))
-    wide = (graph[poor] @ graph + graph[poor]).tocsr()
-    wide = wide.tocoo()
+    wide = (graph[poor] @ graph + graph[poor]).tocoo()
     keep = wide.col != poor[wide.row]
-    plain = np.ones(cells, dtype=bool)
-    plain[poor] = False
+    own, far = wide.row[keep], wide.col[keep]  # by row, as `wide` was compressed by row
+    far_weight, _ = least_squares(center, poor, starts(own, len(poor)), far)
     row = np.repeat(np.arange(cells), np.diff(start))
-    rows = np.concatenate([row[plain[row]], poor[wide.row[keep]]])
-    cols = np.concatenate([other[plain[row]], wide.col[keep]])
+    plain = ~np.isin(row, poor)
+    rows = np.concatenate([row[plain], poor[own]])
+    cols = np.concatenate([other[plain], far])
     order = np.lexsort((cols, rows))
-    new_start = np.concatenate([[0], np.cumsum(np.bincount(rows, minlength=cells))])
-    new_other = cols[order]
-    return new_start, new_other, least_squares(center, new_start, new_other)[0]
+    return starts(rows, cells), cols[order], np.concatenate([weight[plain], far_weight])[order]
 
 
 def few_faces(mesh: Mesh) -> np.ndarray:
