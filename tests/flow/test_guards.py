@@ -262,11 +262,14 @@ def test_freezing_changes_no_gradient_but_by_the_byte_it_is_kept_in():
 
 
 def test_fast_flows_form_with_small_steps():
-    """The CFL number grows by less, and to less, until the residual has fallen two decades; slow flows stay bold."""
+    """The CFL number grows by less from Mach 2.5 on, until the residual has fallen 1.7 decades; slow flows stay bold."""
     steering = Steering(np.array([1.5, 2.5, 5.0]), Caution(25.0, 100.0), impulsive=False)
     np.testing.assert_allclose(steering.cfl, [25.0, 5.0, 5.0])
-    for norm in 0.9 ** np.arange(30):
+    for norm in 0.9 ** np.arange(5):
         steering.advance(np.full(3, norm), np.zeros(3))
-    np.testing.assert_allclose(steering.cfl, [100.0, 40.0, 40.0])
+    np.testing.assert_allclose(steering.cfl, [100.0, 5.0 * 1.3**4, 5.0 * 1.3**4])
+    for norm in 0.9 ** np.arange(5, 30):
+        steering.advance(np.full(3, norm), np.zeros(3))
+    np.testing.assert_allclose(steering.cfl, [100.0, 80.0, 60.0])
     steering.advance(np.full(3, 1e-3), np.full(3, 3.0))
-    np.testing.assert_allclose(steering.cfl, [100.0, 60.0, 60.0])
+    np.testing.assert_allclose(steering.cfl, [100.0, 100.0 - 40.0 / 6.0, 60.0])

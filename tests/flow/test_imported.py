@@ -156,7 +156,8 @@ def test_prisms_converge():
 def test_half_a_sphere_is_as_the_whole_from_mach_03_to_10(tmp_path):
     """Everything converges on the coarse levels that an imported mesh has; drag and extrema are the whole sphere's.
 
-    The extrema lie on the plane of symmetry, next to which slopes are one-sided in the half.
+    The extrema lie on the plane of symmetry, next to which slopes are one-sided in the half. The wake at Mach 0.8 leans by
+    itself: C_L is 0.010 on the whole sphere, five decades down.
     """
     half, whole = half_sphere(tmp_path), structured.sphere(24, 12)
     assert 2 * half.cells == whole.cells
@@ -167,10 +168,10 @@ def test_half_a_sphere_is_as_the_whole_from_mach_03_to_10(tmp_path):
         for mesh, area in ((half, np.pi / 2), (whole, np.pi))
     ]
     assert len(cases[0].solution.statistics["level_cells"]) > 1
-    for ours, theirs in zip(*(case.records for case in cases), strict=True):
+    for m, ours, theirs in zip(mach, *(case.records for case in cases), strict=True):
         assert ours["converged"] and theirs["converged"]
         assert ours["CD"] == pytest.approx(theirs["CD"], rel=0.005, abs=0.002)
         assert ours["Cp_max"] == pytest.approx(theirs["Cp_max"], rel=0.03)
         assert ours["Cp_min"] == pytest.approx(theirs["Cp_min"], rel=0.02)
-        assert abs(ours["CL"]) < 0.01
+        assert ours["CL"] == pytest.approx(theirs["CL"], abs=0.01 if m == 0.8 else 0.001)
         assert abs(ours["CY"]) > 0.1 > abs(theirs["CY"])  # that of the half
