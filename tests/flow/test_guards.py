@@ -262,7 +262,7 @@ def test_freezing_changes_no_gradient_but_by_the_byte_it_is_kept_in():
 
 
 def test_fast_flows_form_with_small_steps():
-    """The CFL number grows by less from Mach 2.5 on, until the residual has fallen 1.7 decades; slow flows stay bold."""
+    """From Mach 2.5 on the CFL number grows by less until the residual has fallen 1.7 decades; slow flows stay bold."""
     steering = Steering(np.array([1.5, 2.5, 5.0]), Caution(25.0, 100.0), impulsive=False)
     np.testing.assert_allclose(steering.cfl, [25.0, 5.0, 5.0])
     for norm in 0.9 ** np.arange(5):

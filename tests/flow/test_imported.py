@@ -156,8 +156,8 @@ def test_prisms_converge():
 def test_half_a_sphere_is_as_the_whole_from_mach_03_to_10(tmp_path):
     """Everything converges on the coarse levels that an imported mesh has; drag and extrema are the whole sphere's.
 
-    The extrema lie on the plane of symmetry, next to which slopes are one-sided in the half. The wake at Mach 0.8 leans by
-    itself: C_L is 0.010 on the whole sphere, five decades down.
+    The extrema lie on the plane of symmetry, next to which slopes are one-sided in the half. The wake at Mach 0.8 leans
+    by itself: C_L is 0.010 on the whole sphere, five decades down.
     """
     half, whole = half_sphere(tmp_path), structured.sphere(24, 12)
     assert 2 * half.cells == whole.cells
