@@ -41,6 +41,17 @@ def test_it_gives_back_coefficients_and_derivatives_of_the_flight_point(result):
         assert "extrapolated to no deflection" in model.source
 
 
+def test_errors_of_the_analysis_go_along(result):
+    point = at(result, "Mach 2.5")
+    point["derivatives"]["Cn_beta"]["error"] = 0.02
+    point["derivatives"]["Cl_beta"]["error"] = None
+    point["coefficient_errors"]["CL"] = 0.003
+    errors = local_model(result, "2.5").errors
+    assert errors["Cn_beta"].half_width(-0.3) == 0.02
+    assert errors["CL"].half_width(0.2) == 0.003
+    assert "Cl_beta" not in errors and "CA" not in errors
+
+
 def test_the_flight_point_must_be_one_of_the_analysis(result):
     with pytest.raises(InputError, match=r"--point: needed, the analysis has Mach 0\.8, "):
         local_model(result)

@@ -29,7 +29,7 @@ class Source:
     Attributes:
         model: tables.
         mass: kg, kg m2; None if the source does not say and no vehicle was named.
-        errors: of derivatives, as the source states them; only a derivatives file does.
+        errors: of derivatives, as the source states them: a derivatives file or an analysis.
         correlation: of these errors, pairs of names to coefficient.
     """
 

@@ -9,6 +9,7 @@ from spaceplane.aero.model.derivatives import CONTROL_DERIVATIVES, DAMPING, STAT
 from spaceplane.aero.model.from_derivatives import linear_model
 from spaceplane.aero.model.model import BASE
 from spaceplane.decks.source import Source
+from spaceplane.dynamics.given_errors import NAMES, GivenError
 from spaceplane.errors import InputError
 from spaceplane.vehicle.controls import CONTROLS
 from spaceplane.vehicle.properties import MassProperties, ReferenceLengths
@@ -18,7 +19,8 @@ def local_model(result: Mapping, point: str | None = None) -> Source:
     """The model about one flight point, and the vehicle's mass.
 
     At the flight point with the deflections of the analysis it has the coefficients of the analysis; from there all is
-    linear, so that the coefficients without deflection are extrapolated by the control derivatives.
+    linear, so that the coefficients without deflection are extrapolated by the control derivatives. The errors that the
+    analysis states of derivatives, C_L and C_D go along, about its own moment centre.
 
     Args:
         result: what `report.read.read_result` gave.
@@ -56,7 +58,15 @@ def local_model(result: Mapping, point: str | None = None) -> Source:
         **start,
     )
     mass = vehicle["mass"]
-    return Source(model, MassProperties(*(mass[key] for key in ("mass_kg", "Ixx_kgm2", "Iyy_kgm2", "Izz_kgm2"))))
+    properties = MassProperties(*(mass[key] for key in ("mass_kg", "Ixx_kgm2", "Iyy_kgm2", "Izz_kgm2")))
+    return Source(model, properties, _errors(chosen))
+
+
+def _errors(point: Mapping) -> dict[str, GivenError]:
+    """Half widths of 95 % intervals by name, those that the analysis has."""
+    stated = {key: one["error"] for key, one in point["derivatives"].items()} | point["coefficient_errors"]
+    known = {key: stated.get(key) for key in NAMES}
+    return {key: GivenError(error) for key, error in known.items() if error is not None and math.isfinite(error)}
 
 
 def _point(points: list[dict], wanted: str | None) -> dict:
