@@ -15,12 +15,10 @@ class History:
         residual: after each iteration, the first before any; force: [3] likewise.
         impulsive: residual of the free stream on this level, which no start worth the name exceeds: one from a coarse
             level that went astray would otherwise pass for decades gained.
-        patience: force windows without a gain of the residual after which standing forces will do.
         failure: why the condition broke; done: whether it left because it was at its end.
     """
 
     impulsive: float = float("inf")
-    patience: int = 2
     residual: list[float] = field(default_factory=list)
     force: list[np.ndarray] = field(default_factory=list)
     failure: str = ""

@@ -21,9 +21,9 @@ ACCELERATED_BELOW_MACH, ACCELERATED_AFTER_DROP = 2.0, 2.3
 WORTH_WAITING = 0.1
 """Decades that a residual must gain in some windows to be worth waiting for, once the forces stand."""
 
-PATIENCE, PATIENT_FROM_MACH = (2, 8), 1.2
-"""Those windows, below and from this Mach number on. Slower flows have base wakes that may never come to rest; faster
-ones do, though some stand still at two decades and a half for fifty iterations before they go on falling."""
+PATIENCE, LEAST_PATIENCE = 8, 2
+"""Those windows; and the fewer ones by which a condition that has used up its iterations is judged. Some residuals
+stand still at two decades and a half for fifty iterations before they go on falling."""
 
 FORMED_AT, FORMING_CFL, FORMING_GROWTH = 1.7, 80.0, 1.3
 """Decades at which a supersonic flow counts as formed; CFL number and its growth from one step to the next until then,
@@ -127,7 +127,7 @@ class Steering:
         return np.maximum(self.cfl * factor, min(0.5, self.caution.cfl_start))
 
 
-def converged(history: History, settings: FlowSettings, patience: int = PATIENCE[0]) -> bool:
+def converged(history: History, settings: FlowSettings, patience: int = LEAST_PATIENCE) -> bool:
     """Whether a condition is good on the fine mesh: residual and force window together.
 
     Either the residual fell by `residual_drop` with forces within the tolerance; or, where it gained nothing more in
@@ -157,7 +157,7 @@ def stalled(history: History, settings: FlowSettings) -> bool:
 
 def finished(history: History, settings: FlowSettings) -> bool:
     """Whether a condition leaves the ensemble before its iterations are used up."""
-    return converged(history, settings, history.patience) or stalled(history, settings)
+    return converged(history, settings, PATIENCE) or stalled(history, settings)
 
 
 def march(
@@ -185,11 +185,7 @@ def march(
         History by condition.
     """
     mach = ensemble.conditions.mach
-    patience = np.where(mach < PATIENT_FROM_MACH - 1e-6, *PATIENCE).tolist()
-    impulsive_norms = ensemble.impulsive_norms()
-    histories = {
-        c: History(norm, windows) for c, (norm, windows) in enumerate(zip(impulsive_norms, patience, strict=True))
-    }
+    histories = {condition: History(norm) for condition, norm in enumerate(ensemble.impulsive_norms())}
     steering = Steering(mach[ensemble.lanes], caution, impulsive)
     freezer = Freezer()
     waiting = deque(range(ensemble.count, len(mach)))

@@ -62,7 +62,7 @@ class FlowSettings:
     cfl_max: float = 100.0
     sweeps: int = 2
     anderson_depth: int = 5
-    iterations: int = 150
+    iterations: int = 200
     coarse_iterations: int = 60
     coarse_levels: int = 3
     residual_drop: float = 3.0
