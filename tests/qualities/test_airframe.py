@@ -43,7 +43,7 @@ def airframe(point=None, fields=None, **changes):
 
 
 def of(verdicts, paragraph, quantity=""):
-    found = [v for v in verdicts if v.paragraph.startswith(paragraph) and quantity in v.quantity]
+    found = [v for v in verdicts if v.paragraph == paragraph and quantity in v.quantity]
     assert len(found) == 1, [(v.paragraph, v.quantity) for v in verdicts]
     return found[0]
 
