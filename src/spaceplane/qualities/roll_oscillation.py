@@ -131,7 +131,12 @@ def peaks(values: np.ndarray, slopes: np.ndarray, step: float) -> list[float]:
 
 
 def oscillatory_share(found: list[float], zeta: float) -> float | None:
-    """Oscillatory part over average of up to three peaks (6.2.6); 0 without a second, None for an average below 0."""
+    """Oscillatory part over average (6.2.6), ratio; 0 without a second peak, None for an average not above 0.
+
+    Args:
+        found: up to three peaks, a maximum first, in any one unit.
+        zeta: damping ratio of the oscillation.
+    """
     if len(found) < 2:
         return 0.0
     high, low = found[0], found[1]
