@@ -116,6 +116,8 @@ def requirements() -> str:
             for name in "LMH"
         ),
     ]
+    share = f"<= {spec['dihedral_limit']['share_high_percent']:g}"
+    rows.append(("dihedral_limit", "share of the aileron at 10 deg of sideslip, %", share, share, "-"))
     rows = [(spec[key]["paragraph"], *row) for key, *row in rows]
     return table(("paragraph", "quantity", "level 1", "level 2", "level 3"), rows)
 

@@ -212,6 +212,33 @@ def test_steady_sideslip_is_steady():
         assert abs(rates[row]) < 1e-12 * terms
 
 
+def test_aileron_that_dihedral_takes():
+    """Share of the aileron at 10 deg of sideslip, from the linear model at rest: p' = r' = 0 with the two controls."""
+    a = airframe(fields={"elevator": math.radians(-10)})
+    system = linearise(a.point, a.mass, a.reference, a.derivatives)
+    rows = [system.index("p"), system.index("r")]
+    columns = [system.inputs.index("aileron"), system.inputs.index("rudder")]
+    held = np.linalg.solve(system.B[np.ix_(rows, columns)], -system.A[rows, system.index("beta")] * math.radians(10))
+    found = of(assess_airframe(a), "3.3.6.3.2")
+    assert found.value == pytest.approx(100 * abs(held[0]) / (math.radians(40) - math.radians(10)), rel=1e-9)
+    assert found.met == (found.value <= 75) and found.margin == pytest.approx(75 - found.value)
+    assert found.limits == {"1": "<= 75", "2": "<= 75", "3": "not specified"} and found.level is None
+
+
+def test_what_moves_the_aileron_that_dihedral_takes():
+    def share(**changes):
+        return of(assess_airframe(airframe(**changes)), "3.3.6.3.2")
+
+    plain, half = share(), {"elevon_left": (-0.3, 0.3), "elevon_right": (-0.3, 0.3)}
+    assert share(Cl_beta=-0.3).value > plain.value and not share(Cl_beta=-0.3).met and plain.met
+    assert share(Cl_aileron=0.1).value < plain.value
+    assert share(fields={"control_limits": half}).value == pytest.approx(plain.value * math.radians(40) / 0.3)
+    alone = share(Cn_rudder=0.0, Cl_rudder=0.0)
+    assert alone.value == pytest.approx(100 * 0.06 / 0.05 * 10 / 40) and "C_l_beta alone" in alone.note
+    assert not share(Cl_beta=0.06).applicable and "not positive" in share(Cl_beta=0.06).note
+    assert not share(Cl_aileron=0.0).applicable and not share(fields={"elevator": math.radians(40)}).applicable
+
+
 def test_senses_in_steady_sideslip():
     verdicts = assess_airframe(airframe())
     assert [of(verdicts, p).met for p in ("3.3.6.1", "3.3.6.2", "3.3.6.3")] == [True, True, True]
@@ -223,7 +250,7 @@ def test_without_controls_signs_decide_and_the_rest_does_not_apply():
     bare = Airframe(horus.point(), horus.MASS, horus.REFERENCE, horus.derivatives())
     verdicts = assess_airframe(bare)
     assert [of(verdicts, p).met for p in ("3.3.6.1", "3.3.6.2", "3.3.6.3")] == [False, True, True]
-    for paragraph in ("3.2.1.1", "3.2.2.2", "3.2.3.1", "3.2.3.2", "3.3.2.2", "3.3.4"):
+    for paragraph in ("3.2.1.1", "3.2.2.2", "3.2.3.1", "3.2.3.2", "3.3.2.2", "3.3.4", "3.3.6.3.2"):
         assert not of(verdicts, paragraph).applicable
     assert all(v.note.startswith("not applicable") for v in verdicts if not v.applicable)
 
