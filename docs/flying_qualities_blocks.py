@@ -101,9 +101,11 @@ def requirements() -> str:
     roll = spec["roll_control"]["B"]["III"]
     slip, rate = spec["sideslip_excursion"]["B"], spec["roll_rate_oscillation"]["B"]
     path = spec["path_stability"]["slope_high_deg_per_knot"]
+    growth = spec["path_stability_below"]["change_high_deg_per_knot"]
     small, bank = (curve_limits(name, "B", None) for name in ("roll_rate_oscillation_small", "bank_oscillation"))
     rows = [
         ("path_stability", "path angle over airspeed (category C), deg/knot", *(f"<= {x:g}" for x in path)),
+        ("path_stability_below", "growth of it towards 5 knots slower (category C), deg/knot", *[f"<= {growth:g}"] * 3),
         ("roll_rate_oscillation", "roll rate, first minimum over first peak", *(f">= {x:g}" for x in rate), "-"),
         ("roll_rate_oscillation_small", "p_osc / p_av, least of figure 4", *(f"<= {x:g}" for x in small), "-"),
         ("bank_oscillation", "phi_osc / phi_av, least of figure 5", *(f"<= {x:g}" for x in bank), "-"),

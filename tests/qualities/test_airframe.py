@@ -44,6 +44,7 @@ def airframe(point=None, fields=None, **changes):
 
 def of(verdicts, paragraph, quantity=""):
     found = [v for v in verdicts if v.paragraph == paragraph and quantity in v.quantity]
+    found = [v for v in found if v.quantity == quantity] or found
     assert len(found) == 1, [(v.paragraph, v.quantity) for v in verdicts]
     return found[0]
 
@@ -91,11 +92,57 @@ def test_path_slope_is_that_of_the_glide():
     slope = (glide(point.velocity + h) - glide(point.velocity - h)) / (2 * h)
     a = Airframe(point.with_coefficients(CL0, CD0), mass, horus.REFERENCE, d)
     assert speed_gradient(*arguments(a)).gamma == pytest.approx(slope, rel=1e-6)
-    verdict = of(assess_airframe(a, category="C"), "3.2.1.3")
+    verdict = of(assess_airframe(a, category="C"), "3.2.1.3", "path angle per airspeed")
     assert verdict.value == pytest.approx(math.degrees(slope) * 1852 / 3600, rel=1e-6)
     assert verdict.applicable and verdict.level is not None
-    elsewhere = of(assess_airframe(a, category="B"), "3.2.1.3")
+    elsewhere = of(assess_airframe(a, category="B"), "3.2.1.3", "path angle per airspeed")
     assert not elsewhere.applicable and elsewhere.level is None
+
+
+def test_path_slope_grows_towards_lower_speed_as_that_of_the_glide():
+    """A glide with a parabolic polar: its slope 5 knots slower less that at the point, by differences of the glide."""
+    point = flight_point(0.25, 500.0, 8.0, -11.0, 0.0, CL=0.0, CD=0.0)
+    mass, knot = replace(horus.MASS, mass=26_000.0), 1852 / 3600
+    force = point.dynamic_pressure * horus.REFERENCE.area
+    weight = mass.mass * point.gravity
+
+    def lift(V, gamma):
+        return (weight - mass.mass * V**2 / point.radius) * math.cos(gamma)
+
+    CL0, CD0 = lift(point.velocity, point.gamma) / force, -weight * math.sin(point.gamma) / force
+    d = horus.derivatives(**{**STABLE, **CONTROLS, "CL_elevator": 0.0, "CD_elevator": 0.0, "CD_alpha": 0.25 * CD0 * 2})
+    k = d.CD_alpha / (2 * CL0 * d.CL_alpha)
+
+    def glide(V):
+        scale, gamma = force * (V / point.velocity) ** 2, point.gamma
+        for _ in range(400):
+            CL = lift(V, gamma) / scale
+            gamma = -math.asin(scale * (CD0 + k * (CL**2 - CL0**2)) / weight)
+        return gamma
+
+    def slope(V, h=0.05):
+        return (glide(V + h) - glide(V - h)) / (2 * h)
+
+    a = Airframe(point.with_coefficients(CL0, CD0), mass, horus.REFERENCE, d)
+    exact = math.degrees(slope(point.velocity - 5 * knot) - slope(point.velocity)) * knot
+    found = of(assess_airframe(a, category="C"), "3.2.1.3", "growth")
+    assert found.value == pytest.approx(exact, rel=1e-4) and exact > 0
+    assert found.met and found.margin == pytest.approx(0.05 - exact, rel=1e-4)
+    elsewhere = of(assess_airframe(a, category="B"), "3.2.1.3", "growth")
+    assert not elsewhere.applicable and elsewhere.value is None and elsewhere.met is None
+    steeper = replace(a, derivatives=replace(d, CD_alpha=2 * d.CD_alpha))
+    assert of(assess_airframe(steeper, category="C"), "3.2.1.3", "growth").value > found.value
+
+
+def test_a_slow_vehicle_on_the_back_of_its_polar_fails():
+    """Near the stall a step of 5 knots is a large share of the speed: the slope grows by more than 0.05 deg/knot."""
+    point = flight_point(0.07, 0.0, 12.0, -12.0, 0.0, CL=0.0, CD=0.0)
+    light = replace(horus.MASS, mass=1_000.0)
+    force, weight = point.dynamic_pressure * horus.REFERENCE.area, light.mass * point.gravity
+    point = point.with_coefficients(weight * math.cos(point.gamma) / force, weight * math.sin(-point.gamma) / force)
+    d = horus.derivatives(**{**STABLE, **CONTROLS, "CD_alpha": 0.4})
+    found = of(assess_airframe(Airframe(point, light, horus.REFERENCE, d), category="C"), "3.2.1.3", "growth")
+    assert found.applicable and not found.met and found.margin < 0
 
 
 def test_elevator_per_g_and_the_load_factors_it_reaches():
