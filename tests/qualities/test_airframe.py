@@ -222,7 +222,18 @@ def test_speed_range_and_class_change_the_requirement():
     assert of(assess_airframe(a), "3.3.4").limits["1"] == "<= 2"
     assert of(assess_airframe(replace(a, speed_range="L")), "3.3.4").limits["1"] == "<= 2.3"
     assert "60 deg" in of(assess_airframe(a, "I"), "3.3.4").quantity
-    assert not of(assess_airframe(a, "IV"), "3.3.4").applicable
+    for category, speed, quantity, level_1 in (
+        ("A", "M", "90 deg", "<= 1.3"),
+        ("A", "H", "50 deg", "<= 1.1"),
+        ("A", "L", "30 deg", "<= 1.1"),
+        ("B", "VL", "90 deg", "<= 2"),
+        ("B", "L", "90 deg", "<= 1.7"),
+        ("C", "VL", "30 deg", "<= 1.1"),
+    ):
+        found = of(assess_airframe(replace(a, speed_range=speed), "IV", category), "3.3.4")
+        assert found.quantity == f"time to bank by {quantity}" and found.limits["1"] == level_1
+        assert found.applicable and f"speed range {speed}" in found.note
+    assert of(assess_airframe(replace(a, speed_range="VL")), "3.3.4").limits["1"] == "<= 2.3"  # class III has no VL
 
 
 def test_sideslip_per_k_is_free_of_the_size_of_the_step():

@@ -108,12 +108,12 @@ def roll_response(system: StateSpace, aileron: float) -> RollResponse | None:
     )
 
 
-def requirement(context: Context, speed_range: str) -> tuple[float, Sequence[float]] | None:
-    """(bank angle, rad; longest times, s, at levels 1 to 3) of table IX; None for class IV, not in the data."""
-    entry = limits.specification()["roll_control"][context.category].get(context.vehicle_class)
-    if entry is None:
-        return None
-    return math.radians(entry["bank_deg"]), entry.get("time_s") or entry[speed_range]
+def requirement(context: Context, speed_range: str) -> tuple[float, Sequence[float]]:
+    """(bank angle, rad; longest times, s, at levels 1 to 3) of table IX; some classes ask by the speed range."""
+    entry = limits.specification()["roll_control"][context.category][context.vehicle_class]
+    times = entry.get("time_s") or entry.get(speed_range) or entry["L"]  # class III knows no VL, which is below its L
+    bank = entry["bank_deg"]
+    return math.radians(bank[speed_range] if isinstance(bank, dict) else bank), times
 
 
 def verdicts(airframe: Airframe, system: StateSpace, context: Context) -> list[Verdict]:
@@ -155,13 +155,8 @@ def _oscillation(response: RollResponse, context: Context) -> Verdict:
     )
 
 
-def _sideslip(
-    response: RollResponse, side: str, wanted: tuple[float, Sequence[float]] | None, context: Context
-) -> Verdict:
+def _sideslip(response: RollResponse, side: str, wanted: tuple[float, Sequence[float]], context: Context) -> Verdict:
     quantity = f"{side} sideslip per k"
-    if wanted is None:
-        note = "not applicable: table IX of class IV is not in the data"
-        return context.verdict("sideslip_excursion", AIRFRAME, quantity, applicable=False, note=note)
     angle, times = wanted
     highs = limits.specification()["sideslip_excursion"][context.category][side]
     window = max(LEAST_WINDOW, response.half_period or 0.0)
@@ -189,19 +184,16 @@ def _sideslip(
 
 def _time_to_bank(
     response: RollResponse,
-    wanted: tuple[float, Sequence[float]] | None,
+    wanted: tuple[float, Sequence[float]],
     aileron: float,
     speed_range: str,
     context: Context,
 ) -> Verdict:
-    if wanted is None:
-        note = "not applicable: table IX of class IV is not in the data"
-        return context.verdict("roll_control", AIRFRAME, "time to bank", applicable=False, note=note)
     angle, highs = wanted
     quantity = f"time to bank by {math.degrees(angle):.0f} deg"
     value = response.time_to_bank(angle)
     notes = [f"aileron {math.degrees(aileron):.3g} deg at once, rudder fixed"]
-    if context.vehicle_class == "III":
+    if context.vehicle_class in ("III", "IV"):
         notes.append(f"speed range {speed_range}")
     if value is None:
         reverses = response.bank_at(highs[2]) < 0
