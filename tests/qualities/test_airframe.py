@@ -234,6 +234,8 @@ def test_speed_range_and_class_change_the_requirement():
         assert found.quantity == f"time to bank by {quantity}" and found.limits["1"] == level_1
         assert found.applicable and f"speed range {speed}" in found.note
     assert of(assess_airframe(replace(a, speed_range="VL")), "3.3.4").limits["1"] == "<= 2.3"  # class III has no VL
+    adverse = [of(assess_airframe(a, name), "3.3.2.4", "adverse") for name in ("III", "IV")]
+    assert all(v.applicable for v in adverse) and adverse[0].value != adverse[1].value  # k by the class's own table
 
 
 def test_sideslip_per_k_is_free_of_the_size_of_the_step():

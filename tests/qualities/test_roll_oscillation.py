@@ -242,7 +242,7 @@ def test_verdicts_of_a_vehicle():
         verdicts = assess_airframe(airframe(level_point(alpha_deg=4.0), Cl_beta=dihedral, Cl_p=-0.3))
         rate, bank = of(verdicts, RATE), of(verdicts, BANK)
         for v in (rate, bank):
-            assert v.applicable and "+-10 deg" in v.note and v.limits["3"] == "not specified"
+            assert v.applicable and "±10 deg" in v.note and v.limits["3"] == "not specified"
             assert v.margin == pytest.approx(float(v.limits["1"][3:]) - v.value, abs=1e-3)
             assert v.level == (1 if v.margin >= 0 else 2 if v.value <= float(v.limits["2"][3:]) else 3)
         values.append(rate.value)

@@ -17,8 +17,8 @@ from spaceplane.qualities.roll_oscillation import RollOscillation, roll_oscillat
 from spaceplane.qualities.verdict import AIRFRAME, Context, Level, Verdict, level_of_most, most_text
 
 QUANTITIES = {
-    "roll_rate_oscillation_small": "oscillation over average of the roll rate",
-    "bank_oscillation": "oscillation over average of the bank angle",
+    "roll_rate_oscillation_small": "oscillation over average, p_osc/p_av",
+    "bank_oscillation": "oscillation over average, phi_osc/phi_av",
 }
 
 
@@ -76,7 +76,7 @@ def _verdict(
     if phase is not None and found.lead is not None:
         psi, lead = math.degrees(phase), math.degrees(found.lead)
         at = abscissa(psi, lead, tuple(entry["first_abscissa_lead_deg"]))
-        said = f"psi_beta {psi:.0f} deg, roll rate leads sideslip by {lead:.0f} deg"
+        said = f"ψ_beta {psi:.0f} deg, roll rate leads sideslip by {lead:.0f} deg"
     highs = curve_limits(criterion, context.category, at)
     level = _level(value, highs)
     tolerance = entry["reading_tolerance_deg"]
@@ -86,13 +86,13 @@ def _verdict(
     if at is not None:
         near = {_level(value, curve_limits(criterion, context.category, at + d)) for d in (-tolerance, 0.0, tolerance)}
         doubt = f", within which the level is {min(near)} to {max(near)}" if len(near) > 1 else ""
-        notes.append(f"limits read from figure {entry['figure']} to +-{tolerance:.0f} deg{doubt}")
+        notes.append(f"limits read from figure {entry['figure']} to ±{tolerance:.0f} deg{doubt}")
     return context.verdict(
         criterion,
         AIRFRAME,
         QUANTITIES[criterion],
         value=value,
-        limits=most_text([*highs, None]),
+        limits=most_text([*(float(f"{high:.3g}") for high in highs), None]),
         level=level,
         margin=None if value is None else highs[0] - value,
         note="; ".join(notes),

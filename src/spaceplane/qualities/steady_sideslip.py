@@ -107,7 +107,9 @@ def _dihedral(airframe: Airframe, found: tuple[float, float, float] | None, cont
         return context.verdict("dihedral_limit", AIRFRAME, quantity, applicable=False, note=f"not applicable: {reason}")
     slip, most = entry["sideslip_deg"], entry["share_high_percent"]
     value = 100.0 * abs(aileron) * math.radians(slip) / limit
-    how = "rudder holds the yawing moment" if found is not None else "by C_l_beta alone: rudder and aileron not known"
+    how = "by C_l_beta alone: rudder and aileron not known"
+    if found is not None:
+        how = f"{abs(found[1]) * slip:.3g} deg of rudder hold the yawing moment"
     return context.verdict(
         "dihedral_limit",
         AIRFRAME,
