@@ -13,6 +13,7 @@ from spaceplane.dynamics.linearise import linearise
 from spaceplane.dynamics.statespace import StateSpace
 from spaceplane.errors import InputError
 from spaceplane.qualities.assess_airframe import assess_airframe
+from spaceplane.qualities.roll_control import roll_response
 from spaceplane.qualities.roll_figures import abscissa, curve_limits
 from spaceplane.qualities.roll_oscillation import oscillatory_share, roll_oscillation
 from spaceplane.qualities.roll_step import LATERAL, lateral_part, roll_row
@@ -256,3 +257,16 @@ def test_where_it_does_not_apply():
     assert "nothing lateral oscillates" in of(assess_airframe(airframe(Cn_beta=-0.3, Cl_beta=0.0)), RATE).note
     with pytest.raises(InputError, match="lacks the states beta"):
         roll_oscillation(StateSpace(np.zeros((3, 3)), np.ones((3, 1)), ("p", "r", "sigma"), ("aileron",)))
+
+
+@pytest.mark.filterwarnings("error")
+def test_a_fast_divergence_neither_overflows_nor_passes_for_a_quiet_roll():
+    """60 /s for 20 s is e^1200: the response is cut short, and the criterion does not apply."""
+    system = yawing()
+    A, b = system.A.copy(), system.B[:, 0]
+    A[0, 0] = 60.0
+    assert roll_oscillation(lateral(A, b)) is None
+    response = roll_response(lateral(A, b), 0.1)
+    assert np.all(np.isfinite(response.bank)) and len(response.time) == len(response.bank)
+    t = response.time_to_bank(math.radians(30))
+    assert t == pytest.approx(math.log(math.radians(30) * 60**2 / 0.1) / 60, rel=0.1)

@@ -11,6 +11,7 @@ from spaceplane.dynamics.statespace import StateSpace
 from spaceplane.errors import InputError
 
 LATERAL = ("p", "r", "beta", "sigma")
+LARGEST = 1e75  # rad and rad/s per rad; its square can still be multiplied
 
 
 def lateral_part(system: StateSpace) -> tuple[np.ndarray, np.ndarray] | None:
@@ -33,7 +34,10 @@ def lateral_part(system: StateSpace) -> tuple[np.ndarray, np.ndarray] | None:
 
 
 def step_states(A: np.ndarray, b: np.ndarray, step: float, doublings: int) -> np.ndarray:
-    """[state, time] after a unit step at time 0 from rest, at 2^doublings times `step`, s, apart; exact."""
+    """[state, time] after a unit step at time 0 from rest, at 2^doublings times `step`, s, apart; exact.
+
+    Fewer doublings where the next would grow beyond `LARGEST`: a fast divergence.
+    """
     n = len(b)
     augmented = np.zeros((n + 1, n + 1))
     augmented[:n, :n], augmented[:n, n] = A, b
@@ -41,6 +45,8 @@ def step_states(A: np.ndarray, b: np.ndarray, step: float, doublings: int) -> np
     states = np.zeros((n + 1, 1))
     states[n] = 1.0
     for _ in range(doublings):
+        if np.abs(power).max() > LARGEST:
+            break
         states, power = np.hstack([states, power @ states]), power @ power
     return states[:n]
 
