@@ -95,14 +95,20 @@ def _shares(found: tuple) -> str:
 def requirements() -> str:
     """Limits on the airframe for class III, category B, as the program holds them."""
     from spaceplane.qualities import limits
+    from spaceplane.qualities.roll_figures import curve_limits
 
     spec = limits.specification()
     roll = spec["roll_control"]["B"]["III"]
     slip, rate = spec["sideslip_excursion"]["B"], spec["roll_rate_oscillation"]["B"]
     path = spec["path_stability"]["slope_high_deg_per_knot"]
+    growth = spec["path_stability_below"]["change_high_deg_per_knot"]
+    small, bank = (curve_limits(name, "B", None) for name in ("roll_rate_oscillation_small", "bank_oscillation"))
     rows = [
         ("path_stability", "path angle over airspeed (category C), deg/knot", *(f"<= {x:g}" for x in path)),
+        ("path_stability_below", "growth of it towards 5 knots slower (category C), deg/knot", *[f"<= {growth:g}"] * 3),
         ("roll_rate_oscillation", "roll rate, first minimum over first peak", *(f">= {x:g}" for x in rate), "-"),
+        ("roll_rate_oscillation_small", "p_osc / p_av, least of figure 4", *(f"<= {x:g}" for x in small), "-"),
+        ("bank_oscillation", "phi_osc / phi_av, least of figure 5", *(f"<= {x:g}" for x in bank), "-"),
         *(
             ("sideslip_excursion", f"{side} sideslip per k, deg", *(f"<= {x:g}" for x in slip[side]), "-")
             for side in ("adverse", "proverse")
@@ -112,6 +118,8 @@ def requirements() -> str:
             for name in "LMH"
         ),
     ]
+    share = f"<= {spec['dihedral_limit']['share_high_percent']:g}"
+    rows.append(("dihedral_limit", "share of the aileron at 10 deg of sideslip, %", share, share, "-"))
     rows = [(spec[key]["paragraph"], *row) for key, *row in rows]
     return table(("paragraph", "quantity", "level 1", "level 2", "level 3"), rows)
 

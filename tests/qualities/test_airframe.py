@@ -43,7 +43,8 @@ def airframe(point=None, fields=None, **changes):
 
 
 def of(verdicts, paragraph, quantity=""):
-    found = [v for v in verdicts if v.paragraph.startswith(paragraph) and quantity in v.quantity]
+    found = [v for v in verdicts if v.paragraph == paragraph and quantity in v.quantity]
+    found = [v for v in found if v.quantity == quantity] or found
     assert len(found) == 1, [(v.paragraph, v.quantity) for v in verdicts]
     return found[0]
 
@@ -91,11 +92,57 @@ def test_path_slope_is_that_of_the_glide():
     slope = (glide(point.velocity + h) - glide(point.velocity - h)) / (2 * h)
     a = Airframe(point.with_coefficients(CL0, CD0), mass, horus.REFERENCE, d)
     assert speed_gradient(*arguments(a)).gamma == pytest.approx(slope, rel=1e-6)
-    verdict = of(assess_airframe(a, category="C"), "3.2.1.3")
+    verdict = of(assess_airframe(a, category="C"), "3.2.1.3", "path angle per airspeed")
     assert verdict.value == pytest.approx(math.degrees(slope) * 1852 / 3600, rel=1e-6)
     assert verdict.applicable and verdict.level is not None
-    elsewhere = of(assess_airframe(a, category="B"), "3.2.1.3")
+    elsewhere = of(assess_airframe(a, category="B"), "3.2.1.3", "path angle per airspeed")
     assert not elsewhere.applicable and elsewhere.level is None
+
+
+def test_path_slope_grows_towards_lower_speed_as_that_of_the_glide():
+    """A glide with a parabolic polar: its slope 5 knots slower less that at the point, by differences of the glide."""
+    point = flight_point(0.25, 500.0, 8.0, -11.0, 0.0, CL=0.0, CD=0.0)
+    mass, knot = replace(horus.MASS, mass=26_000.0), 1852 / 3600
+    force = point.dynamic_pressure * horus.REFERENCE.area
+    weight = mass.mass * point.gravity
+
+    def lift(V, gamma):
+        return (weight - mass.mass * V**2 / point.radius) * math.cos(gamma)
+
+    CL0, CD0 = lift(point.velocity, point.gamma) / force, -weight * math.sin(point.gamma) / force
+    d = horus.derivatives(**{**STABLE, **CONTROLS, "CL_elevator": 0.0, "CD_elevator": 0.0, "CD_alpha": 0.25 * CD0 * 2})
+    k = d.CD_alpha / (2 * CL0 * d.CL_alpha)
+
+    def glide(V):
+        scale, gamma = force * (V / point.velocity) ** 2, point.gamma
+        for _ in range(400):
+            CL = lift(V, gamma) / scale
+            gamma = -math.asin(scale * (CD0 + k * (CL**2 - CL0**2)) / weight)
+        return gamma
+
+    def slope(V, h=0.05):
+        return (glide(V + h) - glide(V - h)) / (2 * h)
+
+    a = Airframe(point.with_coefficients(CL0, CD0), mass, horus.REFERENCE, d)
+    exact = math.degrees(slope(point.velocity - 5 * knot) - slope(point.velocity)) * knot
+    found = of(assess_airframe(a, category="C"), "3.2.1.3", "growth")
+    assert found.value == pytest.approx(exact, rel=1e-4) and exact > 0
+    assert found.met and found.margin == pytest.approx(0.05 - exact, rel=1e-4)
+    elsewhere = of(assess_airframe(a, category="B"), "3.2.1.3", "growth")
+    assert not elsewhere.applicable and elsewhere.value is None and elsewhere.met is None
+    steeper = replace(a, derivatives=replace(d, CD_alpha=2 * d.CD_alpha))
+    assert of(assess_airframe(steeper, category="C"), "3.2.1.3", "growth").value > found.value
+
+
+def test_a_slow_vehicle_on_the_back_of_its_polar_fails():
+    """Near the stall a step of 5 knots is a large share of the speed: the slope grows by more than 0.05 deg/knot."""
+    point = flight_point(0.07, 0.0, 12.0, -12.0, 0.0, CL=0.0, CD=0.0)
+    light = replace(horus.MASS, mass=1_000.0)
+    force, weight = point.dynamic_pressure * horus.REFERENCE.area, light.mass * point.gravity
+    point = point.with_coefficients(weight * math.cos(point.gamma) / force, weight * math.sin(-point.gamma) / force)
+    d = horus.derivatives(**{**STABLE, **CONTROLS, "CD_alpha": 0.4})
+    found = of(assess_airframe(Airframe(point, light, horus.REFERENCE, d), category="C"), "3.2.1.3", "growth")
+    assert found.applicable and not found.met and found.margin < 0
 
 
 def test_elevator_per_g_and_the_load_factors_it_reaches():
@@ -175,7 +222,20 @@ def test_speed_range_and_class_change_the_requirement():
     assert of(assess_airframe(a), "3.3.4").limits["1"] == "<= 2"
     assert of(assess_airframe(replace(a, speed_range="L")), "3.3.4").limits["1"] == "<= 2.3"
     assert "60 deg" in of(assess_airframe(a, "I"), "3.3.4").quantity
-    assert not of(assess_airframe(a, "IV"), "3.3.4").applicable
+    for category, speed, quantity, level_1 in (
+        ("A", "M", "90 deg", "<= 1.3"),
+        ("A", "H", "50 deg", "<= 1.1"),
+        ("A", "L", "30 deg", "<= 1.1"),
+        ("B", "VL", "90 deg", "<= 2"),
+        ("B", "L", "90 deg", "<= 1.7"),
+        ("C", "VL", "30 deg", "<= 1.1"),
+    ):
+        found = of(assess_airframe(replace(a, speed_range=speed), "IV", category), "3.3.4")
+        assert found.quantity == f"time to bank by {quantity}" and found.limits["1"] == level_1
+        assert found.applicable and f"speed range {speed}" in found.note
+    assert of(assess_airframe(replace(a, speed_range="VL")), "3.3.4").limits["1"] == "<= 2.3"  # class III has no VL
+    adverse = [of(assess_airframe(a, name), "3.3.2.4", "adverse") for name in ("III", "IV")]
+    assert all(v.applicable for v in adverse) and adverse[0].value != adverse[1].value  # k by the class's own table
 
 
 def test_sideslip_per_k_is_free_of_the_size_of_the_step():
@@ -212,6 +272,33 @@ def test_steady_sideslip_is_steady():
         assert abs(rates[row]) < 1e-12 * terms
 
 
+def test_aileron_that_dihedral_takes():
+    """Share of the aileron at 10 deg of sideslip, from the linear model at rest: p' = r' = 0 with the two controls."""
+    a = airframe(fields={"elevator": math.radians(-10)})
+    system = linearise(a.point, a.mass, a.reference, a.derivatives)
+    rows = [system.index("p"), system.index("r")]
+    columns = [system.inputs.index("aileron"), system.inputs.index("rudder")]
+    held = np.linalg.solve(system.B[np.ix_(rows, columns)], -system.A[rows, system.index("beta")] * math.radians(10))
+    found = of(assess_airframe(a), "3.3.6.3.2")
+    assert found.value == pytest.approx(100 * abs(held[0]) / (math.radians(40) - math.radians(10)), rel=1e-9)
+    assert found.met == (found.value <= 75) and found.margin == pytest.approx(75 - found.value)
+    assert found.limits == {"1": "<= 75", "2": "<= 75", "3": "not specified"} and found.level is None
+
+
+def test_what_moves_the_aileron_that_dihedral_takes():
+    def share(**changes):
+        return of(assess_airframe(airframe(**changes)), "3.3.6.3.2")
+
+    plain, half = share(), {"elevon_left": (-0.3, 0.3), "elevon_right": (-0.3, 0.3)}
+    assert share(Cl_beta=-0.3).value > plain.value and not share(Cl_beta=-0.3).met and plain.met
+    assert share(Cl_aileron=0.1).value < plain.value
+    assert share(fields={"control_limits": half}).value == pytest.approx(plain.value * math.radians(40) / 0.3)
+    alone = share(Cn_rudder=0.0, Cl_rudder=0.0)
+    assert alone.value == pytest.approx(100 * 0.06 / 0.05 * 10 / 40) and "C_l_beta alone" in alone.note
+    assert not share(Cl_beta=0.06).applicable and "not positive" in share(Cl_beta=0.06).note
+    assert not share(Cl_aileron=0.0).applicable and not share(fields={"elevator": math.radians(40)}).applicable
+
+
 def test_senses_in_steady_sideslip():
     verdicts = assess_airframe(airframe())
     assert [of(verdicts, p).met for p in ("3.3.6.1", "3.3.6.2", "3.3.6.3")] == [True, True, True]
@@ -223,7 +310,7 @@ def test_without_controls_signs_decide_and_the_rest_does_not_apply():
     bare = Airframe(horus.point(), horus.MASS, horus.REFERENCE, horus.derivatives())
     verdicts = assess_airframe(bare)
     assert [of(verdicts, p).met for p in ("3.3.6.1", "3.3.6.2", "3.3.6.3")] == [False, True, True]
-    for paragraph in ("3.2.1.1", "3.2.2.2", "3.2.3.1", "3.2.3.2", "3.3.2.2", "3.3.4"):
+    for paragraph in ("3.2.1.1", "3.2.2.2", "3.2.3.1", "3.2.3.2", "3.3.2.2", "3.3.4", "3.3.6.3.2"):
         assert not of(verdicts, paragraph).applicable
     assert all(v.note.startswith("not applicable") for v in verdicts if not v.applicable)
 

@@ -1,8 +1,12 @@
 """Every limit of the data file against tables of MIL-F-8785C, entered a second time, in the tables' own grouping."""
 
+import math
+
 import pytest
 
 from spaceplane.qualities import limits
+from spaceplane.qualities.roll_control import requirement
+from spaceplane.qualities.verdict import Context
 
 # (category, classes) -> what the tables print. Classes L are land-based, C carrier-based.
 SHORT_PERIOD = {  # table IV: least and greatest damping ratio
@@ -65,11 +69,30 @@ def test_least_frequencies_and_load_factors():
         assert spec["C"]["load_low"][vehicle_class] == ([2.0, 1.0] if heavy else [2.7, 1.8])
 
 
+CLASS_IV = {  # table IXb: bank angle change, deg, and times at levels 1 to 3 by category and speed range
+    ("A", "VL"): (30, 1.1, 1.6, 2.6),
+    ("A", "L"): (30, 1.1, 1.5, 2.0),
+    ("A", "M"): (90, 1.3, 1.7, 2.6),
+    ("A", "H"): (50, 1.1, 1.3, 2.6),
+    ("B", "VL"): (90, 2.0, 2.8, 3.7),
+    ("B", "L"): (90, 1.7, 2.5, 3.4),
+    ("B", "M"): (90, 1.7, 2.5, 3.4),
+    ("B", "H"): (90, 1.7, 2.5, 3.4),
+    **{("C", speed): (30, 1.1, 1.3, 2.0) for speed in ("VL", "L", "M", "H")},
+}
+
+
+def test_time_to_bank_of_class_iv():
+    for (category, speed), (bank, *times) in CLASS_IV.items():
+        angle, found = requirement(Context("IV", category), speed)
+        assert math.degrees(angle) == pytest.approx(bank) and list(found) == times
+
+
 def test_limits_loosen_with_the_level():
     """Whatever is asked at level 1 is asked no more strictly at level 2, nor at 3."""
     spec = limits.specification()
     for category in limits.CATEGORIES:
-        for vehicle_class in ("I", "II-L", "II-C", "III"):
+        for vehicle_class in limits.CLASSES:
             row = spec["roll_control"][category][vehicle_class]
             for times in (value for key, value in row.items() if key != "bank_deg"):
                 assert times == sorted(times)

@@ -12,7 +12,7 @@ from spaceplane.errors import InputError, unknown_name
 from spaceplane.vehicle.controls import CONTROL_LIMITS_DEG, CONTROLS
 from spaceplane.vehicle.properties import MassProperties, ReferenceLengths
 
-SPEED_RANGES = ("L", "M", "H")
+SPEED_RANGES = ("VL", "L", "M", "H")
 
 
 def default_limits() -> dict[str, tuple[float, float]]:
@@ -32,7 +32,7 @@ class Airframe:
         pitching_moment: C_m at the flight point with the elevator at `elevator`; None if unknown.
         elevator: deflection of the elevator at the flight point, rad, trailing edge down positive.
         load_factors: least and greatest load factor of the operational flight envelope, g; None if unknown.
-        speed_range: L, M or H of the roll requirements of class III.
+        speed_range: VL, L, M or H of the roll requirements of classes III and IV; class III counts VL as L.
         control_limits: least and greatest deflection of each surface, rad.
         rudder_per_aileron: deflection of the rudder that goes with one of the aileron, ratio, for the lateral control
             departure parameter; None for aileron alone.

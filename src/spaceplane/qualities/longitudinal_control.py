@@ -7,6 +7,7 @@ import math
 from spaceplane.environment.constants import STANDARD_GRAVITY
 from spaceplane.qualities import limits
 from spaceplane.qualities.airframe import Airframe
+from spaceplane.qualities.glide_slope import gradient_at
 from spaceplane.qualities.gradients import LoadGradient, SpeedGradient, load_gradient, pitches, speed_gradient
 from spaceplane.qualities.verdict import AIRFRAME, BELOW, Context, Level, Verdict, level_of_most, most_text
 
@@ -21,6 +22,7 @@ def verdicts(airframe: Airframe, context: Context) -> list[Verdict]:
     return [
         _speed_stability(airframe, by_speed, context),
         _path_stability(by_speed, context),
+        _path_stability_below(airframe, by_speed, context),
         _maneuver_stability(airframe, by_load, context),
         _trim_control(airframe, context),
         _maneuver_control(airframe, by_load, context),
@@ -68,6 +70,32 @@ def _path_stability(found: SpeedGradient | None, context: Context) -> Verdict:
         margin=highs[0] - value,
         applicable=applies,
         note=note if applies else "not applicable: asked of the landing approach (category C) only",
+    )
+
+
+def _path_stability_below(airframe: Airframe, found: SpeedGradient | None, context: Context) -> Verdict:
+    entry = limits.specification()["path_stability_below"]
+    most, quantity = entry["change_high_deg_per_knot"], "path angle per airspeed, growth when slower"
+    reason, slower = "", None
+    if context.category not in entry["categories"]:
+        reason = "asked of the landing approach (category C) only"
+    elif found is not None:
+        arguments = (airframe.point, airframe.mass, airframe.reference, airframe.derivatives)
+        slower = gradient_at(-entry["slower_knots"] * KNOT, *arguments)
+    if found is None or slower is None:
+        note = f"not applicable: {reason or 'no glide at the lower speed'}"
+        return context.verdict("path_stability_below", AIRFRAME, quantity, applicable=False, note=note)
+    value = math.degrees(slower.gamma - found.gamma) * KNOT
+    return context.verdict(
+        "path_stability_below",
+        AIRFRAME,
+        quantity,
+        value=value,
+        unit="deg/knot",
+        limits={k: f"<= {most:g}" for k in "123"},
+        margin=most - value,
+        met=value <= most,
+        note=f"{entry['slower_knots']:g} knots below this flight point; drag with the square of the lift; no levels",
     )
 
 

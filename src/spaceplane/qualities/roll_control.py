@@ -1,4 +1,4 @@
-"""MIL-F-8785C 3.3.2.2, 3.3.2.4, 3.3.4: roll rate, sideslip and time to bank after a step of the aileron.
+"""MIL-F-8785C 3.3.2.2 to 3.3.2.4, 3.3.4: roll rate, sideslip and time to bank after a step of the aileron.
 
 The lateral part of the linear model (p, r, beta, sigma) answers a step to the limit of the aileron, rudder fixed; the
 longitudinal motion is held. The response is exact for the linear system (matrix exponential); for bank angles of 30
@@ -13,12 +13,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import expm
 
 from spaceplane.dynamics.statespace import StateSpace
 from spaceplane.errors import InputError
-from spaceplane.qualities import limits
+from spaceplane.qualities import limits, roll_figures
 from spaceplane.qualities.airframe import Airframe
+from spaceplane.qualities.roll_step import lateral_part, roll_row, step_states
 from spaceplane.qualities.verdict import (
     AIRFRAME,
     BELOW,
@@ -31,7 +31,6 @@ from spaceplane.qualities.verdict import (
     most_text,
 )
 
-LATERAL = ("p", "r", "beta", "sigma")
 STEP = 0.02  # s
 DOUBLINGS = 10  # 1024 steps, 20.5 s
 LEAST_WINDOW = 2.0  # s of 3.3.2.4
@@ -95,42 +94,30 @@ def roll_response(system: StateSpace, aileron: float) -> RollResponse | None:
     """
     if not (math.isfinite(aileron) and aileron > 0):
         raise InputError(f"aileron = {aileron}: must be a step above 0 rad")
-    missing = [name for name in LATERAL if name not in system.states]
-    if missing:
-        raise InputError(f"system: lacks the states {', '.join(missing)}")
-    if "aileron" not in system.inputs:
+    found = lateral_part(system)
+    if found is None:
         return None
-    rows = [system.index(name) for name in LATERAL]
-    A, b = system.A[np.ix_(rows, rows)], system.B[rows, system.inputs.index("aileron")]
-    if b[0] == 0.0:
-        return None
-    augmented = np.zeros((5, 5))
-    augmented[:4, :4], augmented[:4, 4] = A, math.copysign(aileron, b[0]) * b
-    power = expm(augmented * STEP)
-    states = np.array([[0.0], [0.0], [0.0], [0.0], [1.0]])
-    for _ in range(DOUBLINGS):
-        states, power = np.hstack([states, power @ states]), power @ power
-    alpha = system.reference.get("alpha", 0.0)
-    swings = [value.imag for value in np.linalg.eigvals(A) if value.imag > 1e-8]
+    states = aileron * step_states(*found, STEP, DOUBLINGS)
+    swings = [value.imag for value in np.linalg.eigvals(found[0]) if value.imag > 1e-8]
     return RollResponse(
         time=STEP * np.arange(states.shape[1]),
-        rate=states[0] * math.cos(alpha) + states[1] * math.sin(alpha),
+        rate=roll_row(system) @ states,
         bank=states[3],
         sideslip=states[2],
         half_period=math.pi / max(swings) if swings else None,
     )
 
 
-def requirement(context: Context, speed_range: str) -> tuple[float, Sequence[float]] | None:
-    """(bank angle, rad; longest times, s, at levels 1 to 3) of table IX; None for class IV, not in the data."""
-    entry = limits.specification()["roll_control"][context.category].get(context.vehicle_class)
-    if entry is None:
-        return None
-    return math.radians(entry["bank_deg"]), entry.get("time_s") or entry[speed_range]
+def requirement(context: Context, speed_range: str) -> tuple[float, Sequence[float]]:
+    """(bank angle, rad; longest times, s, at levels 1 to 3) of table IX; some classes ask by the speed range."""
+    entry = limits.specification()["roll_control"][context.category][context.vehicle_class]
+    times = entry.get("time_s") or entry.get(speed_range) or entry["L"]  # class III knows no VL, which is below its L
+    bank = entry["bank_deg"]
+    return math.radians(bank[speed_range] if isinstance(bank, dict) else bank), times
 
 
 def verdicts(airframe: Airframe, system: StateSpace, context: Context) -> list[Verdict]:
-    """Roll rate oscillations, adverse and proverse sideslip, time to bank."""
+    """Roll rate and bank angle oscillations, adverse and proverse sideslip, time to bank."""
     quantities = (
         ("roll_rate_oscillation", "roll rate at first minimum over first peak"),
         ("sideslip_excursion", "adverse sideslip per k"),
@@ -142,10 +129,12 @@ def verdicts(airframe: Airframe, system: StateSpace, context: Context) -> list[V
     response = roll_response(system, limit) if known and limit > 0 else None
     if response is None:
         note = NO_AILERON if limit > 0 else "not applicable: the elevator leaves no aileron"
-        return [context.verdict(key, AIRFRAME, quantity, applicable=False, note=note) for key, quantity in quantities]
+        silent = [context.verdict(key, AIRFRAME, quantity, applicable=False, note=note) for key, quantity in quantities]
+        return [silent[0], *roll_figures.verdicts(system, context, note), *silent[1:]]
     wanted = requirement(context, airframe.speed_range)
     return [
         _oscillation(response, context),
+        *roll_figures.verdicts(system, context),
         *(_sideslip(response, side, wanted, context) for side in ("adverse", "proverse")),
         _time_to_bank(response, wanted, limit, airframe.speed_range, context),
     ]
@@ -166,13 +155,8 @@ def _oscillation(response: RollResponse, context: Context) -> Verdict:
     )
 
 
-def _sideslip(
-    response: RollResponse, side: str, wanted: tuple[float, Sequence[float]] | None, context: Context
-) -> Verdict:
+def _sideslip(response: RollResponse, side: str, wanted: tuple[float, Sequence[float]], context: Context) -> Verdict:
     quantity = f"{side} sideslip per k"
-    if wanted is None:
-        note = "not applicable: table IX of class IV is not in the data"
-        return context.verdict("sideslip_excursion", AIRFRAME, quantity, applicable=False, note=note)
     angle, times = wanted
     highs = limits.specification()["sideslip_excursion"][context.category][side]
     window = max(LEAST_WINDOW, response.half_period or 0.0)
@@ -200,19 +184,16 @@ def _sideslip(
 
 def _time_to_bank(
     response: RollResponse,
-    wanted: tuple[float, Sequence[float]] | None,
+    wanted: tuple[float, Sequence[float]],
     aileron: float,
     speed_range: str,
     context: Context,
 ) -> Verdict:
-    if wanted is None:
-        note = "not applicable: table IX of class IV is not in the data"
-        return context.verdict("roll_control", AIRFRAME, "time to bank", applicable=False, note=note)
     angle, highs = wanted
     quantity = f"time to bank by {math.degrees(angle):.0f} deg"
     value = response.time_to_bank(angle)
     notes = [f"aileron {math.degrees(aileron):.3g} deg at once, rudder fixed"]
-    if context.vehicle_class == "III":
+    if context.vehicle_class in ("III", "IV"):
         notes.append(f"speed range {speed_range}")
     if value is None:
         reverses = response.bank_at(highs[2]) < 0

@@ -1,4 +1,4 @@
-"""MIL-F-8785C 3.3.6: senses of rudder, bank angle and aileron in steady straight sideslips.
+"""MIL-F-8785C 3.3.6: senses of rudder, bank angle and aileron in steady straight sideslips, and how much aileron.
 
 Nothing turns and the wings are nearly level, so for aileron a, rudder r and bank angle phi per sideslip beta
 
@@ -7,6 +7,7 @@ Nothing turns and the wings are nearly level, so for aileron a, rudder r and ban
 
 In right sideslip (beta > 0, the wind from the right) the rudder must yaw the nose to the left, the right wing be down
 and the aileron roll to the right. Without the controls the signs of C_n_beta, C_Y_beta and C_l_beta say the same.
+Positive dihedral may not take more than a share of the aileron (3.3.6.3.2); the sideslip is that of 3.3.7.1.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ import math
 
 import numpy as np
 
+from spaceplane.qualities import limits
 from spaceplane.qualities.airframe import Airframe
 from spaceplane.qualities.verdict import AIRFRAME, Context, Verdict
 
@@ -42,8 +44,13 @@ def solve(airframe: Airframe) -> tuple[float, float, float] | None:
 
 
 def verdicts(airframe: Airframe, context: Context) -> list[Verdict]:
-    """Three verdicts: yawing moment, side force, rolling moment; requirements of sense, without levels."""
-    found, d = solve(airframe), airframe.derivatives
+    """Four verdicts: senses of yawing moment, side force and rolling moment, without levels; aileron for dihedral."""
+    found = solve(airframe)
+    return [*_senses(airframe, found, context), _dihedral(airframe, found, context)]
+
+
+def _senses(airframe: Airframe, found: tuple[float, float, float] | None, context: Context) -> list[Verdict]:
+    d = airframe.derivatives
     if found is None:
         return [
             _of_sign(context, criterion, derivative, sign, getattr(d, derivative))
@@ -79,4 +86,38 @@ def _of_sign(context: Context, criterion: str, name: str, sign: float, value: fl
         margin=sign * value,
         met=sign * value > 0,
         note="aileron and rudder are not both known: judged by the derivative alone; no levels",
+    )
+
+
+def _dihedral(airframe: Airframe, found: tuple[float, float, float] | None, context: Context) -> Verdict:
+    """Aileron that holds the sideslip, as a share of what there is beside the elevator of the flight point."""
+    d, limit, quantity = airframe.derivatives, airframe.aileron_limit(), "share of the aileron that holds the sideslip"
+    entry = limits.specification()["dihedral_limit"]
+    power = d.control("Cl", "aileron") if "aileron" in d.available_controls() else 0.0
+    reason = ""
+    if power == 0.0 or not math.isfinite(limit):
+        reason = "no aileron with a rolling moment and limits is known"
+    elif limit == 0.0:
+        reason = "the elevator leaves no aileron"
+    else:
+        aileron = found[0] if found is not None else -d.Cl_beta / power
+        if power * aileron <= 0.0:
+            reason = "dihedral is not positive"
+    if reason:
+        return context.verdict("dihedral_limit", AIRFRAME, quantity, applicable=False, note=f"not applicable: {reason}")
+    slip, most = entry["sideslip_deg"], entry["share_high_percent"]
+    value = 100.0 * abs(aileron) * math.radians(slip) / limit
+    how = "by C_l_beta alone: rudder and aileron not known"
+    if found is not None:
+        how = f"{abs(found[1]) * slip:.3g} deg of rudder hold the yawing moment"
+    return context.verdict(
+        "dihedral_limit",
+        AIRFRAME,
+        quantity,
+        value=value,
+        unit="%",
+        limits={"1": f"<= {most:g}", "2": f"<= {most:g}", "3": "not specified"},
+        margin=most - value,
+        met=value <= most,
+        note=f"{abs(aileron) * slip:.3g} of {math.degrees(limit):.3g} deg for {slip:g} deg of sideslip; {how}",
     )
