@@ -132,7 +132,8 @@ def converged(history: History, settings: FlowSettings, patience: int = LEAST_PA
 
     Either the residual fell by `residual_drop` with forces within the tolerance; or, where it gained nothing more in
     `patience` windows, by half a decade more than `least_drop` with forces standing over two windows, or by
-    `least_drop` with forces standing over three.
+    `least_drop` with forces standing over three. Then they must not have crept by more than twice as much over the
+    whole `PATIENCE` either (or the later half of a shorter run): a slow wake drifts by little in a few windows.
     """
     window, tolerance, drop = settings.window, settings.force_tolerance, history.drop()
     length = len(history.residual)
@@ -140,11 +141,11 @@ def converged(history: History, settings: FlowSettings, patience: int = LEAST_PA
         return False
     if drop >= settings.residual_drop:
         return history.spread(window) < tolerance
-    if history.gain(patience * window) > WORTH_WAITING:
+    windows = 2 if drop >= settings.least_drop + 0.5 else 3
+    if drop < settings.least_drop or length <= windows * window or history.gain(patience * window) > WORTH_WAITING:
         return False
-    if drop >= settings.least_drop + 0.5:
-        return length > 2 * window and history.spread(2 * window) < tolerance
-    return drop >= settings.least_drop and length > 3 * window and history.spread(3 * window) < tolerance
+    crept = history.spread(min(PATIENCE * window, length // 2))
+    return history.spread(windows * window) < tolerance and crept < 2.0 * tolerance
 
 
 def stalled(history: History, settings: FlowSettings) -> bool:
