@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import platform
+import resource
 import statistics
 import time
 from collections.abc import Callable
@@ -42,6 +43,19 @@ def timed(task: Callable[[], object], repeats: int = 1) -> tuple[float, object]:
         result = task()
         seconds.append(time.perf_counter() - start)
     return statistics.median(seconds), result
+
+
+def peak_memory() -> float:
+    """Bytes of memory that this process has held at most.
+
+    Linux counts into a process's `ru_maxrss` what the one that started it held; `VmHWM` is its own.
+    """
+    status = Path("/proc/self/status")
+    if status.exists():
+        for line in status.read_text().splitlines():
+            if line.startswith("VmHWM:"):
+                return float(line.split()[1]) * 1024.0
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024.0
 
 
 def cores() -> int:

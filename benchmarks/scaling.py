@@ -102,18 +102,13 @@ def one(cells: int, count: int, iterations: int) -> dict[str, float]:
     The cost of an iteration is the median of those after the first, per cell and condition in ns; memory is the peak of
     the process less what it held before the mesh, in bytes per cell and condition.
     """
-    import resource
-
-    from common import conditions, vehicle_mesh
+    from common import conditions, peak_memory, vehicle_mesh
 
     from spaceplane.flow.settings import FlowSettings
     from spaceplane.flow.solve import solve
 
-    def peak() -> float:
-        return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024.0
-
     solve(vehicle_mesh(5_000), conditions(count), FlowSettings(iterations=3, coarse_iterations=3))
-    before, clocks = peak(), (time.perf_counter, time.process_time)
+    before, clocks = peak_memory(), (time.perf_counter, time.process_time)
     began = [clock() for clock in clocks]
     mesh = vehicle_mesh(cells)
     meshed = [clock() for clock in clocks]
@@ -141,8 +136,8 @@ def one(cells: int, count: int, iterations: int) -> dict[str, float]:
         "iteration_cpu_s": cpu,
         "cpu_ns": cpu * share,
         "wall_ns": wall * share,
-        "peak_memory_gb": peak() / 1e9,
-        "bytes": (peak() - before) / (mesh.cells * 16),
+        "peak_memory_gb": peak_memory() / 1e9,
+        "bytes": (peak_memory() - before) / (mesh.cells * 16),
         "solver_s": ended[0] - meshed[0],
         "solver_cpu_s": ended[1] - meshed[1],
     }

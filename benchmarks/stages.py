@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import dataclasses
-import resource
 
-from common import DEFLECTED, conditions, timed
+from common import DEFLECTED, conditions, peak_memory, timed
 
 from spaceplane.flow.settings import FlowSettings
 from spaceplane.flow.solve import solve
@@ -43,5 +42,5 @@ def measure(cells: int, count: int) -> dict[str, float]:
         "least_decades": min(record.residual_drop for record in solution.records),
         "fine_iterations_mean": iterations / count,
         "ns_per_cell_and_condition_iteration": 1e9 * solving / (mesh.cells * iterations),
-        "peak_memory_gb": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6,
+        "peak_memory_gb": peak_memory() / 1e9,
     }
