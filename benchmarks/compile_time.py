@@ -25,7 +25,7 @@ def tell(phase, *_):
         begun.append(time.time())
 
 begun = []
-mesh, flow = MeshSettings(target_cells=1500), FlowSettings(iterations=2, coarse_iterations=2)
+mesh, flow = MeshSettings(wall_cell=1.0), FlowSettings(iterations=2, coarse_iterations=2)
 solve_vehicle(horus_2b(), DEFLECTED, conditions(1), mesh, flow, tell)
 print(begun[0])
 """

@@ -173,7 +173,8 @@ def march(
 ) -> dict[int, History]:
     """Iterate until every condition of the ensemble has stopped, failed or used up `iterations`.
 
-    Conditions beyond the lanes wait; each takes the first lane that becomes free.
+    Conditions beyond the lanes wait; each takes the first lane that becomes free, in step with the others, so that the
+    diagonal blocks of all are due in the same iterations.
 
     Args:
         stop: whether a condition with this history is done.
@@ -198,7 +199,8 @@ def march(
             ensemble.undo(undone)
             norms = ensemble.evaluate()
         active &= ~leave(ensemble, active, norms, histories, iterations, stop, finish)
-        seated = np.flatnonzero(~active)[: len(waiting)]
+        in_step = iteration % FORMED_AGAIN_EVERY == 0 or not active.any()
+        seated = np.flatnonzero(~active)[: len(waiting)] if in_step else np.empty(0, dtype=int)
         if len(seated):
             for lane in seated:
                 condition = waiting.popleft()
@@ -221,7 +223,7 @@ def march(
             ensemble.hold[:] = freezer.held
             ensemble.frozen[:] = freezer.frozen
         quiet = (drop > FORMED_AGAIN_DROP) & (norms < 2.0 * steering.best) & ~undone
-        ensemble.correct(steering.cfl, again=~quiet | (age % FORMED_AGAIN_EVERY == 0))
+        ensemble.correct(steering.cfl, again=active & (~quiet | (age % FORMED_AGAIN_EVERY == 0)))
         steering.limited = ensemble.apply(caution.largest, calm)
     return histories
 
