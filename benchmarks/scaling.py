@@ -99,11 +99,12 @@ def _apart(cells: int, count: int, iterations: int | None) -> dict[str, float]:
 def one(cells: int, count: int, iterations: int) -> dict[str, float]:
     """Mesh of about `cells` cells, then `iterations` fine iterations of `count` conditions, or to convergence for 0.
 
-    The cost of an iteration is the median of those after the first, per cell and condition in ns; memory is the peak of
+    The cost of an iteration, of all lanes, is the median of those after the first, in ns per cell and lane; memory is the peak of
     the process less what it held before the mesh, in bytes per cell and condition.
     """
     from common import conditions, peak_memory, vehicle_mesh
 
+    from spaceplane.flow.compiled import LANES
     from spaceplane.flow.settings import FlowSettings
     from spaceplane.flow.solve import solve
 
@@ -127,7 +128,7 @@ def one(cells: int, count: int, iterations: int) -> dict[str, float]:
     ended = [clock() for clock in clocks]
     spans = [[b - a for a, b in itertools.pairwise(x[1:])] for x in zip(*ticks, strict=True)]
     wall, cpu = (statistics.median(span) if span else 0.0 for span in spans)
-    share = 1e9 / (mesh.cells * 16)
+    share = 1e9 / (mesh.cells * LANES)
     return {
         "cells": mesh.cells,
         "mesh_s": meshed[0] - began[0],
@@ -137,7 +138,7 @@ def one(cells: int, count: int, iterations: int) -> dict[str, float]:
         "cpu_ns": cpu * share,
         "wall_ns": wall * share,
         "peak_memory_gb": peak_memory() / 1e9,
-        "bytes": (peak_memory() - before) / (mesh.cells * 16),
+        "bytes": (peak_memory() - before) / (mesh.cells * count),
         "solver_s": ended[0] - meshed[0],
         "solver_cpu_s": ended[1] - meshed[1],
     }

@@ -92,7 +92,14 @@ def scaling() -> str:
         )
         for s in sizes
     ]
-    head = ("cells", "mesh, s", "one iteration, s", "ns per cell and condition", "bytes per cell and condition", "GB")
+    head = (
+        "cells",
+        "mesh, s",
+        "one iteration of eight, s",
+        "ns per cell and condition",
+        "bytes per cell and condition",
+        "GB",
+    )
     small, large = sizes[0], sizes[-1]
     power = math.log(f[f"{large} iteration_cpu_s"] / f[f"{small} iteration_cpu_s"])
     power /= math.log(f[f"{large} cells"] / f[f"{small} cells"])
