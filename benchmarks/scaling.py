@@ -99,8 +99,8 @@ def _apart(cells: int, count: int, iterations: int | None) -> dict[str, float]:
 def one(cells: int, count: int, iterations: int) -> dict[str, float]:
     """Mesh of about `cells` cells, then `iterations` fine iterations of `count` conditions, or to convergence for 0.
 
-    The cost of an iteration, of all lanes, is the median of those after the first, in ns per cell and lane; memory is the peak of
-    the process less what it held before the mesh, in bytes per cell and condition.
+    The cost of an iteration, of all lanes, is the median of those after the first, in ns per cell and lane; memory is
+    the peak of the process less what it held before the mesh, in bytes per cell and condition.
     """
     from common import conditions, peak_memory, vehicle_mesh
 
