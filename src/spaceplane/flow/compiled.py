@@ -19,8 +19,8 @@ from spaceplane.kernelcache import cache_of, inner
 CACHE = cache_of(Path(__file__).parent)
 
 # Lanes of an ensemble: a constant, so that loops over them become vectors without remainder. Eight are one vector of
-# single precision on most processors: sixteen took a seventh less time per lane, but twice the memory, and of sixteen
-# three fifths stood empty, on the mean of a set of sixteen conditions, while the last ones converged; of eight a quarter.
+# single precision on most processors: sixteen took a seventh less time per lane, but twice the memory, and in a set of
+# sixteen conditions three fifths of them stood empty on the mean while the last ones converged; of eight a quarter.
 # A row holds the five variables of a cell, each for all lanes: density from RHO on, velocity from VX, VY, VZ, pressure
 # from PRS.
 LANES = 8
