@@ -132,8 +132,9 @@ class _Job:
             stop = partial(finished, settings=settings) if last else partial(fallen, decades=1.5 if order == 1 else 2.0)
             tick = partial(self._tell, phase, settings.residual_drop if last else 2.0)
             histories = march(ensemble, limit, caution, stop, finish, tick, start, impulsive=start is None)
-            longest = np.argsort([-len(histories[column].residual) for column in range(len(which))], kind="stable")
-            which, start = which[longest], result[:, :, longest]
+            if not last:
+                longest = np.argsort([-len(histories[column].residual) for column in range(len(which))], kind="stable")
+                which, start = which[longest], result[:, :, longest]
             seconds[phase] = seconds.get(phase, 0.0) + time.perf_counter() - began
 
     def _hand_on(self, start, parent, offset, result, column, ensemble, lane, history):
