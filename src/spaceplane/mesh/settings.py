@@ -24,8 +24,10 @@ def check_passes(field: str, passes: int) -> int:
 
 
 MOST_EDGE_LEVELS = 4
-MOST_EDGE_CELLS = 16.0
 """Times that cells at edges may be halved."""
+
+MOST_EDGE_CELLS = 16.0
+"""Cells that may be asked for across the thickness of a thin wall."""
 
 
 @dataclass(frozen=True)
