@@ -92,7 +92,7 @@ def _path_stability_below(airframe: Airframe, found: SpeedGradient | None, conte
         quantity,
         value=value,
         unit="deg/knot",
-        limits={k: f"<= {most:g}" for k in "123"},
+        limits=most_text([most] * 3),
         margin=most - value,
         met=value <= most,
         note=f"{entry['slower_knots']:g} knots below this flight point; drag with the square of the lift; no levels",

@@ -18,7 +18,7 @@ import numpy as np
 
 from spaceplane.qualities import limits
 from spaceplane.qualities.airframe import Airframe
-from spaceplane.qualities.verdict import AIRFRAME, Context, Verdict
+from spaceplane.qualities.verdict import AIRFRAME, Context, Verdict, most_text
 
 RULES = (
     # criterion, quantity with controls, derivative without them, sign wanted of it
@@ -116,7 +116,7 @@ def _dihedral(airframe: Airframe, found: tuple[float, float, float] | None, cont
         quantity,
         value=value,
         unit="%",
-        limits={"1": f"<= {most:g}", "2": f"<= {most:g}", "3": "not specified"},
+        limits=most_text([most, most, None]),
         margin=most - value,
         met=value <= most,
         note=f"{abs(aileron) * slip:.3g} of {math.degrees(limit):.3g} deg for {slip:g} deg of sideslip; {how}",
