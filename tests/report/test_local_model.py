@@ -87,3 +87,12 @@ def test_an_analysis_flies_and_becomes_an_aircraft(capfd, out_dir, tmp_path):
         capfd.readouterr()
         assert cli.run([*wrong, "--out", str(tmp_path / "no")]) == 2
         assert naming in capfd.readouterr().err
+
+
+def test_errors_of_an_analysis_stay_behind_when_the_centre_of_mass_is_moved(capfd, out_dir, tmp_path):
+    fly = ["fly", str(out_dir), "--point", "2.5", "--no-control"]
+    assert cli.run([*fly, "--center-of-mass", "13.1,0,0", "--out", str(tmp_path / "moved")]) in (0, 1)
+    moved = capfd.readouterr().err
+    assert cli.run([*fly, "--out", str(tmp_path / "as-it-is")]) in (0, 1)
+    said = "errors of the source hold about its own moment centre and are left out"
+    assert said in moved and said not in capfd.readouterr().err

@@ -104,9 +104,13 @@ def fly(
     if machs is None and sources.is_analysis(source):
         # The middle of the model's range is the one Mach number that it is made about.
         given["machs"] = (round(float(found.model.mach.mean()), 9),)
-    if uncertainty is None:
+    if uncertainty is None and center is None:
         given |= {"uncertainty": found.errors, "correlation": found.correlation}
-    if samples is not None and not given["uncertainty"]:
+    elif uncertainty is None and found.errors:
+        typer.echo(
+            "errors of the source hold about its own moment centre and are left out; see --uncertainty", err=True
+        )
+    if samples is not None and not given.get("uncertainty"):
         raise InputError("--samples: goes with --uncertainty")
     settings = DescentSettings(**given)
     if found.mass is None:
