@@ -149,8 +149,8 @@ def converged(history: History, settings: FlowSettings, patience: int = LEAST_PA
 
 
 def stalled(history: History, settings: FlowSettings) -> bool:
-    """Whether more iterations bring nothing: no better residual for six windows while forces wander within a bound."""
-    span = 6 * settings.window
+    """Whether more iterations bring nothing: no better residual for all that patience, forces within a bound."""
+    span = PATIENCE * settings.window
     if len(history.residual) <= 2 * span:
         return False
     return min(history.residual[-span:]) > 0.8 * min(history.residual[:-span]) and history.spread(span) < 0.02
