@@ -327,7 +327,8 @@ def test_unwritable_flow_output(capfd, tmp_path, option, name):
         ("--precision", "half"), ("--vtu", "field.txt"), ("--uncertainty", "grid"), ("--uncertainty", ""),
         ("--accuracy", ""), ("--accuracy", "fine"), ("--accuracy", "%"), ("--accuracy", "0"), ("--accuracy", "-1%"),
         ("--accuracy", "0.001%"), ("--accuracy", "90%"), ("--accuracy", "1"), ("--accuracy", "nan"),
-        ("--adapt", "4"), ("--adapt", "0.5"),
+        ("--adapt", "4"), ("--adapt", "0.5"), ("--edges", "6"), ("--edges", "-1"), ("--edges", "1.5"), ("--edges", "a"),
+        ("--edges", ""), ("--edges", "2,4,4"), ("--edges", "2,0"), ("--edges", "2,99"), ("--edges", "1,4"),
     ],
 )  # fmt: skip
 def test_bad_flow_options(capfd, tmp_path, option, text):
@@ -364,6 +365,7 @@ def test_what_an_accuracy_does_not_go_with(capfd, tmp_path, command, options, na
         (("--adapt", "1"), "--adapt: 1, goes with --cells"),
         (("--adapt", "4", "--cells", "40k"), "--adapt: 4"),
         (("--adapt", "1", "--cells", "40k", "--accuracy", "5%"), "adapt = 1: not allowed with accuracy"),
+        (("--adapt", "1", "--cells", "40k", "--edges", "2"), "--edges: 2, not allowed with --adapt 1"),
     ],
 )
 def test_what_an_adapted_analysis_does_not_go_with(capfd, tmp_path, options, naming):
@@ -760,6 +762,8 @@ def test_local_inclination_from_the_command_line(capfd, tmp_path):
         (("--method", "newtonian", "--cell", "0.1"), "--cell: 0.1"),
         (("--method", "tangent", "--cells", "1000"), "--cells: 1000"),
         (("--method", "tangent", "--adapt", "1"), "--adapt: 1"),
+        (("--method", "tangent", "--edges", "1"), "--edges: 1"),
+        (("--cells", "40k", "--edges", "1", "--adapt", "1"), "--edges: 1, not allowed with --adapt 1"),
         (("--cell", "0.1", "--adapt", "1"), "--adapt: 1, goes with --cells"),
         (("--method", "tangent", "--domain", "0,0,0,1,1,1"), "--domain"),
         (("--method", "tangent", "--vtu", "a.vtu"), "--vtu"),
@@ -820,6 +824,7 @@ def test_flow_on_a_mesh(capfd, tmp_path, ending):
         (["--cell", "0.1"], "--cell: 0.1, not allowed with --mesh"),
         (["--cells", "1000"], "--cells: 1000, not allowed with --mesh"),
         (["--adapt", "1"], "--adapt: 1, not allowed with --mesh"),
+        (["--edges", "1"], "--edges: 1, not allowed with --mesh"),
         (["--domain", "0,0,0,1,1,1"], "--domain"),
         (["--accuracy", "1%"], "--accuracy: 1%, not allowed with --mesh"),
         (["--uncertainty", "mesh"], "--uncertainty: mesh, not allowed with --mesh"),
@@ -879,6 +884,18 @@ def test_adapted_flow_from_the_command_line(capfd, tmp_path):
     assert 0.0 < again["coefficient_errors_by_source"]["mesh"]["CD"] < 0.5 * again["CD"]
     options = ("--cells", "40k", "--adapt", 1, "--accuracy", "5%")
     refused(capfd, "flow", body, "--mach", 2, *FLOW, *options, naming="--accuracy: 5%, not allowed")
+
+
+def test_edges_are_finer_by_default_and_as_asked(capfd, tmp_path):
+    """Cells grow in number from no finer edges over one halving, the default, to two."""
+    body = wedge(tmp_path / "w.stl")
+
+    def cells(*options):
+        code, out, err = run(capfd, "flow", body, "--mach", 2, *FLOW, "--cell", 0.25, "--json", "-", *options)
+        assert code == 0, err
+        return json.loads(out)[0]["cells"]
+
+    assert cells("--edges", "0") < cells() == cells("--edges", "1") < cells("--edges", "2")
 
 
 def test_interrupt_from_outside_is_one_line_and_130(tmp_path):

@@ -73,4 +73,9 @@ def test_more_cells_across_more_cells():
 @pytest.mark.parametrize("value", [-1.0, 17.0, float("nan")])
 def test_a_number_that_makes_no_sense_is_refused(value):
     with pytest.raises(InputError, match="edge_cells"):
-        MeshSettings(edge_cells=value)
+        MeshSettings(edge_levels=2, edge_cells=value)
+
+
+def test_cells_across_edges_go_with_halvings():
+    with pytest.raises(InputError, match="edge_cells: 4, goes with edge_levels"):
+        MeshSettings(edge_cells=4.0)

@@ -42,6 +42,7 @@ def analyse(
     ] = None,
     cell: options.Cell = None,
     cells: options.Cells = None,
+    edges: options.Edges = None,
     adapt: options.Adapt = "0",
     uncertainty: options.Uncertainty = "mesh",
     accuracy: options.AccuracyText = None,
@@ -79,7 +80,9 @@ def analyse(
     increments = options.increment_settings(friction, base, wall_temperature, emissivity, transition_reynolds)
     asked = options.accuracy(accuracy, cell, cells, uncertainty)
     stated = options.uncertainty(uncertainty)
-    settings = _settings(machs, alpha, deflect, allow_outside_limits, cell, cells, precision)
+    if edges is not None and adapt != "0":
+        raise InputError(f"--edges: {edges}, not allowed with --adapt {adapt}: it finds out where to refine")
+    settings = _settings(machs, alpha, deflect, allow_outside_limits, (cell, cells, edges), precision)
     steps = replace(settings.steps, two_step_sizes=True) if two_steps else settings.steps
     settings = replace(
         settings,
@@ -123,10 +126,10 @@ def _settings(
     alpha: str | None,
     deflect: list[str] | None,
     allow_outside_limits: bool,
-    cell: str | None,
-    cells: str | None,
+    sizes: tuple[str | None, str | None, str | None],
     precision: str,
 ) -> AnalyseSettings:
+    """Settings of the options; `sizes` are --cell, --cells and --edges."""
     solver_precision = options.precision(precision)
     alphas = None if alpha is None else numbers("--alpha", alpha, "degrees")
     if alphas is not None and len(alphas) not in (1, len(machs)):
@@ -139,6 +142,6 @@ def _settings(
         mach=tuple(machs),
         alpha_deg=None if alphas is None else tuple(alphas * len(machs) if len(alphas) == 1 else alphas),
         deflections=options.load_deflections(deflect, allow_outside_limits, default.deflections.to_degrees()),
-        mesh=options.mesh_settings(cell, cells, default.mesh),
+        mesh=options.mesh_settings(*sizes, default.mesh),
         flow=replace(default.flow, precision=solver_precision),
     )

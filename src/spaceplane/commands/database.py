@@ -151,7 +151,7 @@ def _settings(
         if method is not None:
             raise InputError(f"--method: {method}, goes with --tier fast only")
         fields["increments"] = options.increment_settings(*increments)
-        fields["mesh"] = options.mesh_settings(given["--cell"], given["--cells"], COARSE_MESH)
+        fields["mesh"] = options.mesh_settings(given["--cell"], given["--cells"], None, COARSE_MESH)
         fields["flow"] = FlowSettings(precision=precision)
         if given["--altitude"] is not None:
             fields["altitude_m"] = number("--altitude", given["--altitude"], "m")

@@ -66,6 +66,7 @@ def flow(
     rates: opt.Rates = "0,0,0",
     cell: options.Cell = None,
     cells: options.Cells = None,
+    edges: options.Edges = None,
     adapt: options.Adapt = "0",
     domain: opt.Domain = None,
     mesh_file: opt.MeshFile = None,
@@ -103,6 +104,7 @@ def flow(
     ambient = _ambient(altitude, friction, any(turning), gas)
     roles = {"wall": wall, "far": far, "symmetry": symmetry}
     mesh_options = {"--cell": cell, "--cells": cells, "--domain": domain, "--accuracy": accuracy}
+    mesh_options["--edges"] = edges
     mesh_options["--uncertainty"] = uncertainty if uncertainty == "mesh" else None
     mesh_options["--adapt"] = None if adapt == "0" else adapt
     if mesh_file is None:
@@ -128,11 +130,13 @@ def flow(
     from spaceplane.mesh.settings import MeshSettings
 
     corners = None if domain is None else numbers("--domain", domain, "m", 6)
-    default = MeshSettings(target_cells=200_000, domain=corners and (tuple(corners[:3]), tuple(corners[3:])))
-    mesh = options.mesh_settings(cell, cells, default)
+    corners = corners and (tuple(corners[:3]), tuple(corners[3:]))
+    default = MeshSettings(target_cells=200_000, domain=corners, fine_edges=True)
+    mesh = options.mesh_settings(cell, cells, edges, default)
     passes = options.adapt_passes(adapt, mesh)
     if passes:
         _refuse_options({"--accuracy": accuracy}, f"not allowed with --adapt {passes}: it refines the whole mesh")
+        _refuse_options({"--edges": edges}, f"not allowed with --adapt {passes}: it finds out where to refine")
     # The numerical stack is loaded after all that can be refused without it.
     from spaceplane.aero.free_streams import FreeStreams
     from spaceplane.flow.settings import FlowSettings

@@ -38,6 +38,15 @@ Cells = Annotated[
     str | None,
     typer.Option("--cells", metavar="N", help="About how many cells the mesh has, such as 300k, instead of --cell."),
 ]
+Edges = Annotated[
+    str | None,
+    typer.Option(
+        "--edges",
+        metavar="N[,CELLS]",
+        help="Halve cells N times (0 to 5) towards sharp edges, by default 1 (flow) or 3 (analyse); with N of 2 or "
+        "more so that CELLS of them fit into the thickness of a plate with square edges.",
+    ),
+]
 Adapt = Annotated[
     str,
     typer.Option(
@@ -143,19 +152,36 @@ def load_deflections(
     return ControlDeflections.from_degrees((base or {}) | given, allow_outside_limits)
 
 
-def mesh_settings(cell: str | None, cells: str | None, default: MeshSettings) -> MeshSettings:
-    """Mesh settings with the wall cell or the number of cells asked for.
+def mesh_settings(cell: str | None, cells: str | None, edges: str | None, default: MeshSettings) -> MeshSettings:
+    """Mesh settings with the wall cell or the number of cells asked for, and finer cells at edges.
 
     Raises:
         InputError: both are given, or one has a value that is not allowed.
     """
     if cell is not None and cells is not None:
         raise InputError("--cell and --cells: give one of them, not both")
+    if edges is not None:
+        default = _with_edges(edges, default)
     if cell is not None:
         return replace(default, wall_cell=positive("--cell", cell, "m"), target_cells=None)
     if cells is not None:
         return replace(default, target_cells=count("--cells", cells, "cells"))
     return default
+
+
+def _with_edges(text: str, settings: MeshSettings) -> MeshSettings:
+    """Mesh settings with the halvings at edges, and the cells across square ones, that `--edges` asks for."""
+    from spaceplane.mesh.settings import MOST_EDGE_CELLS, MOST_EDGE_LEVELS
+
+    halvings, *across = text.split(",")
+    times, most = number("--edges", halvings), MOST_EDGE_LEVELS + 1
+    if times != int(times) or not 0 <= times <= most or len(across) > 1:
+        raise InputError(f"--edges: {text!r}, allowed N or N,CELLS with N a whole number from 0 to {most}")
+    thickness = number("--edges", across[0]) if across else 0.0
+    if across and (times < 2 or not 0.0 < thickness <= MOST_EDGE_CELLS):
+        raise InputError(f"--edges: {text!r}, CELLS above 0 up to {MOST_EDGE_CELLS:g} go with N of at least 2")
+    levels = max(int(times) - 1, 0)
+    return replace(settings, fine_edges=times > 0, edge_levels=levels, edge_cells=thickness)
 
 
 def uncertainty(text: str) -> str:

@@ -155,7 +155,7 @@ def follower(settings: MeshSettings, wall_cell: float | None = None) -> MeshSett
         settings: the user's.
         wall_cell: that the first mesh was made with, m; None leaves it and the target to the settings.
     """
-    bare = replace(settings, wall_layers=1, growth_layers=1, fine_edges=False, edge_levels=0)
+    bare = replace(settings, wall_layers=1, growth_layers=1, fine_edges=False, edge_levels=0, edge_cells=0.0)
     return bare if wall_cell is None else replace(bare, target_cells=None, wall_cell=wall_cell)
 
 

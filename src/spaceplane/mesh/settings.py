@@ -117,6 +117,8 @@ class MeshSettings:
             raise InputError(f"edge_levels: {self.edge_levels}, allowed 0 to {MOST_EDGE_LEVELS}")
         if not 0.0 <= self.edge_cells <= MOST_EDGE_CELLS:
             raise InputError(f"edge_cells: {self.edge_cells}, allowed 0 to {MOST_EDGE_CELLS:g}")
+        if self.edge_cells and not self.edge_levels:
+            raise InputError(f"edge_cells: {self.edge_cells:g}, goes with edge_levels of at least 1, which reach them")
         if not 0.0 <= self.merge_fraction <= 0.9:
             raise InputError(f"merge_fraction: {self.merge_fraction}, allowed 0 to 0.9")
         if self.domain is not None and not all(low < high for low, high in zip(*self.domain, strict=True)):
