@@ -46,6 +46,53 @@ def test_the_trim_at_the_taem_interface(descent):
     assert (found["CL"], found["CD"]) == pytest.approx((trim.CL, trim.CD))
 
 
+def test_by_default_it_glides_near_to_the_path_and_bank_of_the_thesis(descent):
+    """-8.4 and 55 deg at the TAEM interface (thesis Table 6.1); shallow where the air is thin."""
+    angles = [(math.degrees(one.point.gamma), math.degrees(one.point.bank)) for one in descent.points]
+    assert angles[2] == (pytest.approx(-8.4, abs=1.5), pytest.approx(55.0, abs=6.0))
+    assert all(-12.0 < gamma < 0.0 < bank < 65.0 for gamma, bank in angles)
+    assert angles[-1][0] > -1.5
+
+
+def test_each_flight_point_may_be_given():
+    given = {"alpha_deg": (12.0, 15.0), "altitude_m": (21e3, 24e3), "gamma_deg": (-5.0, -7.0), "bank_deg": (10.0, 40.0)}
+    found = descend(horus_2b_published(), MASS, DescentSettings((2.0, 2.5), **given)).points
+    for k, one in enumerate(found):
+        assert one.point.altitude == given["altitude_m"][k]
+        for name in ("alpha", "gamma", "bank"):
+            assert math.degrees(getattr(one.point, name)) == pytest.approx(given[f"{name}_deg"][k])
+
+
+def test_given_altitudes_bend_the_glide():
+    """Twice the height for the same speeds takes a path twice as steep, but for gravity's part in the speed."""
+
+    def gamma(rise):
+        settings = DescentSettings((2.0, 2.5), alpha_deg=(14.0, 14.0), altitude_m=(22e3, 22e3 + rise))
+        return descend(horus_2b_published(), MASS, settings).points[0].point.gamma
+
+    assert gamma(0.0) == 0.0
+    assert 1.6 < gamma(3e3) / gamma(1.5e3) < 2.0
+
+
+@pytest.mark.parametrize(
+    ("given", "naming"),
+    [
+        ({"alpha_deg": (10.0,)}, "alpha_deg: 1 values for 2 Mach numbers"),
+        ({"bank_deg": (10.0, 20.0, 30.0)}, "bank_deg: 3 values for 2"),
+        ({"gamma_deg": (math.nan, 0.0)}, "gamma"),
+        ({"altitude_m": (1e9, 1e9)}, "altitude"),
+    ],
+)
+def test_bad_flight_points(given, naming):
+    with pytest.raises(InputError, match=naming):
+        DescentSettings((2.0, 2.5), **given)
+
+
+def test_a_single_altitude_says_nothing_of_the_path():
+    with pytest.raises(InputError, match="gamma_deg: is needed"):
+        DescentSettings((2.0,), altitude_m=(22e3,))
+
+
 def test_modes_follow_from_the_sign_of_the_pitch_stiffness(descent):
     """Stable in pitch at Mach 1.5 and 10, where a short period is; a divergence between, as the literature has it."""
     for one in descent.points:
@@ -190,7 +237,7 @@ def test_what_is_wrong_is_named(wrong, message):
 def test_bank_couples_and_level_flight_does_not():
     groups = []
     for bank in (0.0, 55.0):
-        point = descend(horus_2b_published(), MASS, DescentSettings((10.0,), bank_deg=bank)).points[0]
+        point = descend(horus_2b_published(), MASS, DescentSettings((10.0,), bank_deg=(bank,))).points[0]
         states = point.system.states
         rows = [states.index(name) for name in ("V", "gamma", "R", "q", "alpha")]
         columns = [states.index(name) for name in ("p", "r", "beta", "sigma")]

@@ -1,4 +1,4 @@
-"""Flight points, the schedule of the descent, equilibrium glide, and the axes."""
+"""Flight points, the schedule of the descent, and the axes."""
 
 import math
 
@@ -8,15 +8,11 @@ import pytest
 from spaceplane.dynamics import frames
 from spaceplane.dynamics.flightpoint import (
     TAEM_MACH,
-    glide_alpha,
-    glide_lift_coefficient,
     scheduled_alpha_deg,
     taem_point,
     trajectory_altitude,
 )
 from spaceplane.errors import InputError
-
-from . import horus
 
 
 def test_the_points_of_the_descent():
@@ -38,21 +34,6 @@ def test_schedule_rises_with_mach():
     with pytest.raises(InputError, match="mach"):
         taem_point(0.3)
     assert taem_point(0.3, altitude_m=2_000.0, alpha_deg=8.0).mach == 0.3
-
-
-def test_equilibrium_glide():
-    """The thesis's own point glides in equilibrium: CL 0.36 at 25 km, bank 55 deg."""
-    point = taem_point(2.5)
-    assert glide_lift_coefficient(point, 26_000.0, 110.0) == pytest.approx(0.36, rel=0.03)
-    alpha = glide_alpha(point, 26_000.0, 110.0, lambda a: -0.04 + 1.6 * a)
-    assert -0.04 + 1.6 * alpha == pytest.approx(glide_lift_coefficient(point, 26_000.0, 110.0), rel=1e-9)
-    steady = point.with_coefficients(glide_lift_coefficient(point, 26_000.0, 110.0), 0.2)
-    from spaceplane.dynamics.equations import flight_model, state_rates
-
-    model = flight_model(steady, horus.MASS, horus.REFERENCE, horus.derivatives())
-    assert state_rates(model.reference_state(), np.zeros(3), model)[1] == pytest.approx(0.0, abs=1e-15)
-    with pytest.raises(InputError, match="equilibrium glide"):
-        glide_alpha(point, 26_000.0, 110.0, lambda a: 0.01 * a)
 
 
 def test_body_to_wind():

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,8 +15,9 @@ from spaceplane.analysis.controllability import Controllability, controllability
 from spaceplane.analysis.feedback_settings import FeedbackSettings
 from spaceplane.analysis.likelihood import Likelihood, likelihood
 from spaceplane.analysis.tracked import Tracked, track
-from spaceplane.dynamics.flightpoint import TAEM_BANK_DEG, TAEM_GAMMA_DEG, FlightPoint, taem_point
+from spaceplane.dynamics.flightpoint import FlightPoint, taem_point
 from spaceplane.dynamics.given_errors import GivenError
+from spaceplane.dynamics.glide import glide_bank, glide_path_angle, tabulated_slope
 from spaceplane.dynamics.linearise import FORMS
 from spaceplane.dynamics.modes import Mode
 from spaceplane.dynamics.statespace import StateSpace
@@ -36,6 +37,8 @@ if TYPE_CHECKING:
     import xarray as xr
 
 MACHS = (1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 7.5, 10.0, 12.5, 15.0, 17.5, 20.0)
+GIVEN = ("alpha_deg", "altitude_m", "gamma_deg", "bank_deg")
+"""What of each flight point may be given."""
 MAP_STEP = math.radians(1.0)
 """Step of the trim map in angle of attack, rad."""
 SAMPLES = 1000
@@ -48,8 +51,12 @@ class DescentSettings:
     """How a descent is flown.
 
     Attributes:
-        machs: increasing Mach numbers; altitude (thesis Table 4.1) and angle of attack follow from each.
-        gamma_deg, bank_deg: flight-path and bank angle, deg, at every Mach number.
+        machs: increasing Mach numbers.
+        alpha_deg: angle of attack at each, deg; None takes the documented schedule.
+        altitude_m: altitude at each, m; None takes the descent of thesis Table 4.1.
+        gamma_deg: flight-path angle at each, deg; None takes the one on which drag slows the glider down as fast as it
+            descends through these altitudes.
+        bank_deg: bank angle at each, deg; None takes the one that holds the path angle, 0 where lift is too little.
         body_flap: rad, everywhere; a schedule Mach number -> rad, linear in between; None, and where the schedule ends,
             chooses the one that leaves the elevator the largest margin.
         form: of the linear model, see `dynamics.linearise.FORMS`.
@@ -60,13 +67,15 @@ class DescentSettings:
         feedback: what a stabilising feedback is put to; None leaves it out.
 
     Raises:
-        InputError: Mach numbers that do not increase or lie outside the descent of the thesis, an angle or number of
-            draws out of range, or an unknown form, class or category.
+        InputError: Mach numbers that do not increase or lie outside the descent of the thesis, not one value for each,
+            an angle or number of draws out of range, or an unknown form, class or category.
     """
 
     machs: Sequence[float] = MACHS
-    gamma_deg: float = TAEM_GAMMA_DEG
-    bank_deg: float = TAEM_BANK_DEG
+    alpha_deg: Sequence[float] | None = None
+    altitude_m: Sequence[float] | None = None
+    gamma_deg: Sequence[float] | None = None
+    bank_deg: Sequence[float] | None = None
     body_flap: float | Mapping[float, float] | None = None
     form: str = FORMS[0]
     vehicle_class: str = "III"
@@ -80,6 +89,12 @@ class DescentSettings:
         machs = np.asarray(self.machs, dtype=float)
         if machs.ndim != 1 or not len(machs) or not (np.diff(machs) > 0.0).all():
             raise InputError(f"mach = {', '.join(f'{m:g}' for m in machs.ravel())}: increasing values are needed")
+        for name in GIVEN:
+            values = getattr(self, name)
+            if values is not None and len(values) != len(machs):
+                raise InputError(f"{name}: {len(values)} values for {len(machs)} Mach numbers; give one for each")
+        if self.gamma_deg is None and self.altitude_m is not None and len(machs) < 2:
+            raise InputError("gamma_deg: is needed with a single altitude, which says nothing of how the path goes on")
         if self.form not in FORMS:
             raise InputError(f"form = {self.form!r}: must be one of {', '.join(FORMS)}")
         limits.check(self.vehicle_class, self.category)
@@ -88,12 +103,24 @@ class DescentSettings:
         self.flight_points()
 
     def flight_points(self) -> list[FlightPoint]:
-        """One for each Mach number, without coefficients.
+        """One for each Mach number, without coefficients; path and bank angle are 0 until they are known.
 
         Raises:
             InputError: a Mach number outside the descent of the thesis, or an angle out of range.
         """
-        return [taem_point(m, gamma_deg=self.gamma_deg, bank_deg=self.bank_deg) for m in self.machs]
+        unknown = {"gamma_deg": 0.0, "bank_deg": 0.0}
+        known = {name: getattr(self, name) for name in GIVEN if getattr(self, name) is not None}
+        return [
+            taem_point(mach, **unknown | {name: values[k] for name, values in known.items()})
+            for k, mach in enumerate(self.machs)
+        ]
+
+    def slopes(self) -> list[float]:
+        """Slope dh/dV, m per m/s, of the altitudes at each Mach number."""
+        if self.altitude_m is None:
+            return [tabulated_slope(mach) for mach in self.machs]
+        points = self.flight_points()
+        return np.gradient([p.altitude for p in points], [p.velocity for p in points]).tolist()
 
 
 @dataclass(frozen=True)
@@ -166,20 +193,23 @@ def descend(
     _check_errors(settings.uncertainty, model)
     say = progress or silent
     points = settings.flight_points()
+    slopes = settings.slopes() if settings.gamma_deg is None else [None] * len(points)
     say("trim map", 0, 1, "")
     within = [m for m in settings.machs if model.mach[0] <= m <= model.mach[-1]]
     machs = np.unique(np.concatenate([model.mach, within]))
     alphas = np.arange(model.alpha[0], model.alpha[-1] + 0.5 * MAP_STEP, MAP_STEP)
     found = trim_map(model, machs.tolist(), alphas.clip(max=model.alpha[-1]).tolist(), settings.body_flap)
     flown = []
-    for number, point in enumerate(points):
+    for number, (point, slope) in enumerate(zip(points, slopes, strict=True)):
         say("flight dynamics", number, len(points), point.name)
-        flown.append(_at(model, mass, point, settings))
+        flown.append(_at(model, mass, point, slope, settings))
     return Descent(model, mass, settings, found, tuple(flown), track(points, [one.system for one in flown]))
 
 
-def _at(model: AeroModel, mass: MassProperties, point: FlightPoint, settings: DescentSettings) -> DescentPoint:
-    """Trim, linear model, modes and verdicts at one flight point."""
+def _at(
+    model: AeroModel, mass: MassProperties, point: FlightPoint, slope: float | None, settings: DescentSettings
+) -> DescentPoint:
+    """Trim, linear model, modes and verdicts at one flight point; `slope`: dh/dV, from which the path angle follows."""
     flap = settings.body_flap
     flap = schedule_at(flap, point.mach) if isinstance(flap, Mapping) else flap
     trims = trim_elevator(model, point.mach, point.alpha, flap)
@@ -190,6 +220,10 @@ def _at(model: AeroModel, mass: MassProperties, point: FlightPoint, settings: De
     if "body_flap" in model.surfaces:
         deflections["body_flap"] = trim.body_flap
     point = point.with_coefficients(trim.CL, trim.CD)
+    if slope is not None:
+        point = replace(point, gamma=glide_path_angle(point, mass.mass, model.reference.area, slope))
+    if settings.bank_deg is None:
+        point = replace(point, bank=glide_bank(point, mass.mass, model.reference.area))
     try:
         derivatives = model.derivatives(point.mach, point.alpha, deflections)
     except OutsideTables as error:

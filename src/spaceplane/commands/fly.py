@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -13,6 +13,9 @@ from spaceplane.commands.arguments import count, mach_numbers, number, numbers, 
 from spaceplane.commands.progress import progress_bar
 from spaceplane.errors import InputError
 from spaceplane.files import writable_folder
+
+if TYPE_CHECKING:
+    from spaceplane.dynamics.flightpoint import FlightPoint
 
 EXAMPLE = "Example: spaceplane fly horus-2b-published --out out/fly"
 
@@ -27,10 +30,41 @@ def fly(
         ),
     ],
     mach: Annotated[
-        str | None, typer.Option("--mach", metavar="M[,M...]", help="Mach numbers; 1.5 to 20 by default.")
+        str | None,
+        typer.Option(
+            "--mach",
+            metavar="M[,M...]",
+            help="Mach numbers; 1.5 to 20 by default, or that of the flight point that the model is linear about.",
+        ),
     ] = None,
-    gamma: Annotated[str | None, typer.Option("--gamma", metavar="DEG", help="Path angle; -8.4 by default.")] = None,
-    bank: Annotated[str | None, typer.Option("--bank", metavar="DEG", help="Bank angle; 55 by default.")] = None,
+    alpha: Annotated[
+        str | None,
+        typer.Option(
+            "--alpha",
+            metavar="DEG[,DEG...]",
+            help="Angle of attack, one or one for each Mach number, as the next three; a schedule by default.",
+        ),
+    ] = None,
+    altitude: Annotated[
+        str | None,
+        typer.Option("--altitude", metavar="M[,M...]", help="Altitude; that of the descent by default."),
+    ] = None,
+    gamma: Annotated[
+        str | None,
+        typer.Option(
+            "--gamma",
+            metavar="DEG[,DEG...]",
+            help="Path angle; by default the glide's, on which drag slows down as fast as the altitudes ask.",
+        ),
+    ] = None,
+    bank: Annotated[
+        str | None,
+        typer.Option(
+            "--bank",
+            metavar="DEG[,DEG...]",
+            help="Bank angle; by default the glide's, which turns sideways what lift is left over.",
+        ),
+    ] = None,
     body_flap: Annotated[
         str | None,
         typer.Option(
@@ -81,17 +115,16 @@ def fly(
     Exit code 1 when no flight point could be trimmed, 2 for bad input.
     """
     machs = None if mach is None else mach_numbers(mach)
-    angles = {"gamma_deg": ("--gamma", gamma), "bank_deg": ("--bank", bank)}
-    given: dict = {name: number(option, text, "deg") for name, (option, text) in angles.items() if text is not None}
-    given |= {"form": form, "vehicle_class": vehicle_class, "category": category}
-    given |= {} if machs is None else {"machs": tuple(machs)}
+    asked = {"alpha_deg": alpha, "altitude_m": altitude, "gamma_deg": gamma, "bank_deg": bank}
+    flown = {name: _each(name, text) for name, text in asked.items() if text is not None}
+    given: dict = {"form": form, "vehicle_class": vehicle_class, "category": category}
     given |= {} if body_flap is None else {"body_flap": math.radians(number("--body-flap", body_flap, "deg"))}
     center = None if center_of_mass is None else numbers("--center-of-mass", center_of_mass, "m", 3)
     if samples is not None:
         given["samples"] = count("--samples", samples, "draws")
     given["feedback"] = feedback.settings(control, gust, offset, decay)
     writable_file(json_file, "--json")
-    from spaceplane.analysis.descent import DescentSettings, descend
+    from spaceplane.analysis.descent import MACHS, DescentSettings, descend
     from spaceplane.decks.source import PUBLISHED
     from spaceplane.dynamics.given_errors import read_errors
     from spaceplane.dynamics.trim.longitudinal import HORUS_2B_BODY_FLAP
@@ -101,9 +134,11 @@ def fly(
     if source == PUBLISHED:
         given.setdefault("body_flap", HORUS_2B_BODY_FLAP)
     found = sources.read(source, vehicle, point)
-    if machs is None and sources.is_analysis(source):
-        # The middle of the model's range is the one Mach number that it is made about.
-        given["machs"] = (round(float(found.model.mach.mean()), 9),)
+    if machs is None and found.point is not None:
+        machs = [found.point.mach]
+        flown = _of(found.point) | flown
+    given["machs"] = tuple(machs or MACHS)
+    given |= {name: values * len(given["machs"]) if len(values) == 1 else values for name, values in flown.items()}
     if uncertainty is None and center is None:
         given |= {"uncertainty": found.errors, "correlation": found.correlation}
     elif uncertainty is None and found.errors:
@@ -133,3 +168,15 @@ def fly(
         typer.echo(f"{len(trimmed)} of {len(descent.points)} flight points trimmed")
         typer.echo(f"report: {files['html']}")
     return 0 if trimmed else 1
+
+
+def _each(name: str, text: str) -> tuple[float, ...]:
+    """Values of `--alpha`, `--altitude`, `--gamma` or `--bank`."""
+    quantity, unit = name.split("_")
+    return tuple(numbers(f"--{quantity}", text, unit))
+
+
+def _of(point: FlightPoint) -> dict[str, tuple[float, ...]]:
+    """The attitude and altitude of a flight point, as settings of a descent."""
+    angles = {f"{name}_deg": (math.degrees(getattr(point, name)),) for name in ("alpha", "gamma", "bank")}
+    return angles | {"altitude_m": (point.altitude,)}

@@ -12,6 +12,7 @@ from spaceplane.aero.model.published import horus_2b_published
 from spaceplane.aero.model.table_set import read_table_set
 from spaceplane.decks import folder
 from spaceplane.dynamics import derivatives_file
+from spaceplane.dynamics.flightpoint import FlightPoint
 from spaceplane.dynamics.given_errors import GivenError, by_surface
 from spaceplane.errors import InputError, unknown_name
 from spaceplane.vehicle import presets
@@ -31,12 +32,14 @@ class Source:
         mass: kg, kg m2; None if the source does not say and no vehicle was named.
         errors: of derivatives, as the source states them: a derivatives file or an analysis.
         correlation: of these errors, pairs of names to coefficient.
+        point: flight point that a model is linear about; None for tables.
     """
 
     model: AeroModel
     mass: MassProperties | None
     errors: Mapping[str, GivenError] = field(default_factory=dict)
     correlation: Mapping[tuple[str, str], float] = field(default_factory=dict)
+    point: FlightPoint | None = None
 
 
 def is_model(source: str) -> bool:
@@ -83,7 +86,7 @@ def read_source(source: str, vehicle: str | None = None) -> Source:
             raise InputError(f"--vehicle: {source} has its own vehicle")
         case = derivatives_file.read(source)
         stated = by_surface(case.uncertainty, case.correlation)
-        return Source(derivatives_file.aero_model(case, Path(source).stem), case.mass, *stated)
+        return Source(derivatives_file.aero_model(case, Path(source).stem), case.mass, *stated, case.point)
     named = presets.load(vehicle) if vehicle else None
     if source == PUBLISHED:
         return Source(horus_2b_published(), (named or presets.horus_2b()).mass)

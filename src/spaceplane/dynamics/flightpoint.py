@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.optimize import brentq
 
 from spaceplane.environment import constants as c
 from spaceplane.environment.atmosphere import Ambient, from_pressure_temperature, us1976
@@ -254,50 +252,6 @@ def equilibrium_rates(point: FlightPoint, mass: float, area: float) -> AngularRa
         q=lift_rate - gravity_rate * math.cos(point.bank),
         r=roll_wind * sin_a + yaw_wind * cos_a,
     )
-
-
-def glide_lift_coefficient(point: FlightPoint, mass: float, area: float) -> float:
-    """Lift coefficient that keeps the flight-path angle: L cos(sigma) = m (g - V^2/R) cos(gamma).
-
-    Raises:
-        InputError: the bank angle is 90 deg or more, where no lift holds the path.
-    """
-    if abs(math.degrees(point.bank)) >= 89.0:
-        raise InputError(f"bank_deg = {math.degrees(point.bank):.4g}: equilibrium glide needs less than 89 deg")
-    weight = mass * (point.gravity - point.velocity**2 / point.radius) * math.cos(point.gamma)
-    return weight / (point.dynamic_pressure * area * math.cos(point.bank))
-
-
-def glide_alpha(
-    point: FlightPoint,
-    mass: float,
-    area: float,
-    lift_coefficient: Callable[[float], float],
-    lower_deg: float = -5.0,
-    upper_deg: float = 45.0,
-) -> float:
-    """Angle of attack, rad, of the equilibrium glide at the point's Mach number, altitude, path and bank angle.
-
-    Args:
-        point: flight point; its own angle of attack is not used.
-        mass: kg.
-        area: reference area, m2.
-        lift_coefficient: CL as a function of the angle of attack, rad.
-        lower_deg: least angle of attack tried, deg.
-        upper_deg: greatest angle of attack tried, deg.
-
-    Raises:
-        InputError: the lift needed is not reached between the two angles.
-    """
-    needed = glide_lift_coefficient(point, mass, area)
-    lower, upper = math.radians(lower_deg), math.radians(upper_deg)
-    low, high = lift_coefficient(lower) - needed, lift_coefficient(upper) - needed
-    if not low * high < 0:
-        raise InputError(
-            f"{point.name}: no equilibrium glide, CL = {needed:.4g} is needed and CL runs from {low + needed:.4g} to "
-            f"{high + needed:.4g} between {lower_deg:g} and {upper_deg:g} deg"
-        )
-    return float(brentq(lambda alpha: lift_coefficient(alpha) - needed, lower, upper, xtol=1e-10))
 
 
 def _interpolate(what: str, table: tuple[tuple[float, float], ...], mach: float) -> float:

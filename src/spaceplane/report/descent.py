@@ -8,7 +8,7 @@ import math
 from pathlib import Path
 
 from spaceplane import __version__
-from spaceplane.analysis.descent import Descent, DescentPoint
+from spaceplane.analysis.descent import Descent, DescentPoint, DescentSettings
 from spaceplane.dynamics.modes import Mode
 from spaceplane.files import json_text, renamed_when_done, told, write_text
 from spaceplane.plain import finite
@@ -21,7 +21,7 @@ from spaceplane.report.plain_page import Table, document, picture_html, table_ht
 from spaceplane.report.read import level_text
 from spaceplane.report.trim_figures import trim_map_figure
 
-SCHEMA, SCHEMA_VERSION = "spaceplane.descent", 1
+SCHEMA, SCHEMA_VERSION = "spaceplane.descent", 2
 LEVELS = ("3.2.1.1", "3.2.1.2", "3.2.2.1.1", "3.2.2.1.2", "3.3.1.1", "3.3.1.2", "3.3.1.3", "3.3.1.4")
 """Paragraphs on modes, in the order of the table of levels."""
 
@@ -57,8 +57,6 @@ def record(descent: Descent) -> dict:
         "model": descent.model.name,
         "source": descent.model.source,
         "unknown": list(descent.model.unknown()),
-        "gamma_deg": settings.gamma_deg,
-        "bank_deg": settings.bank_deg,
         "form": settings.form,
         "class": settings.vehicle_class,
         "category": settings.category,
@@ -75,6 +73,8 @@ def _point_record(one: DescentPoint) -> dict:
         "mach": point.mach,
         "altitude_m": point.altitude,
         "alpha_deg": math.degrees(point.alpha),
+        "gamma_deg": trim and math.degrees(point.gamma),
+        "bank_deg": trim and math.degrees(point.bank),
         "dynamic_pressure_Pa": point.dynamic_pressure,
         "reason": one.reason,
         "trim": trim
@@ -112,8 +112,7 @@ def page(descent: Descent, drawn: dict[str, bytes]) -> str:
     title = f"{descent.model.name}: trim, modes and flying qualities"
     settings = descent.settings
     told_first = (
-        f"Source: {descent.model.source}. Path angle {settings.gamma_deg:g} deg, bank {settings.bank_deg:g} deg at "
-        f"every Mach number; altitude of thesis Table 4.1; MIL-F-8785C class {settings.vehicle_class}, category "
+        f"Source: {descent.model.source}. {_flown_by(settings)} MIL-F-8785C class {settings.vehicle_class}, category "
         f"{settings.category}."
     )
     unknown = f"Not in the tables and taken as zero: {', '.join(descent.model.unknown()) or 'nothing'}."
@@ -122,6 +121,17 @@ def page(descent: Descent, drawn: dict[str, bytes]) -> str:
         parts.append(table_html(table))
         parts += [picture_html(drawn[name], text) for name, text in _BELOW.get(table.title, ()) if name in drawn]
     return document(title, [*parts, *descent_control.html_parts(descent, drawn)])
+
+
+def _flown_by(settings: DescentSettings) -> str:
+    """How altitude, angle of attack, path and bank angle come about."""
+    sources = {
+        "Altitude": (settings.altitude_m, "of thesis Table 4.1"),
+        "angle of attack": (settings.alpha_deg, "by the schedule"),
+        "path angle": (settings.gamma_deg, "that on which drag slows down as fast as the altitudes ask"),
+        "bank angle": (settings.bank_deg, "that which holds the path, 0 where lift is too little for it"),
+    }
+    return "; ".join(f"{what} {'as given' if given else source}" for what, (given, source) in sources.items()) + "."
 
 
 EVENTS = "Events along the descent"
@@ -137,35 +147,35 @@ _BELOW = {
 
 
 def tables(descent: Descent) -> list[Table]:
-    """Trim, modes and levels by Mach number."""
+    """Flight points, trim, modes and levels by Mach number."""
     likely = descent_likelihood.tables(descent)
-    return [_trims(descent), _modes(descent), *_events(descent), _levels(descent), *likely]
+    return [_flight_points(descent), _trims(descent), _modes(descent), *_events(descent), _levels(descent), *likely]
+
+
+def _flight_points(descent: Descent) -> Table:
+    columns = ("Mach", "altitude, km", "q, kPa", "alpha, deg", "path, deg", "bank, deg", "CL", "CD", "L/D")
+    rows = []
+    for one in descent.points:
+        point, t = one.point, one.trim
+        air = f"{point.mach:g}", f"{point.altitude / 1e3:.1f}", f"{point.dynamic_pressure / 1e3:.2f}"
+        alpha, *angles = (f"{math.degrees(value):.1f}" for value in (point.alpha, point.gamma, point.bank))
+        flown = (*angles, f"{t.CL:.3f}", f"{t.CD:.3f}", f"{t.lift_to_drag:.2f}") if t else ("-",) * 5
+        rows.append((*air, alpha, *flown))
+    return Table("Flight points", 2, "", columns, tuple(rows))
 
 
 def _trims(descent: Descent) -> Table:
-    columns = (
-        "Mach",
-        "altitude, km",
-        "alpha, deg",
-        "elevator, deg",
-        "body flap, deg",
-        "margin, deg",
-        "CL",
-        "CD",
-        "L/D",
-        "static margin",
-    )
+    columns = ("Mach", "alpha, deg", "elevator, deg", "body flap, deg", "margin, deg", "static margin")
     rows, reasons = [], []
     for one in descent.points:
-        start = (f"{one.point.mach:g}", f"{one.point.altitude / 1e3:.1f}", f"{math.degrees(one.point.alpha):.1f}")
+        start = (f"{one.point.mach:g}", f"{math.degrees(one.point.alpha):.1f}")
         if one.trim is None:
-            rows.append((*start, "none", *("-",) * 6))
+            rows.append((*start, "none", "-", "-", "-"))
             reasons.append(f" Mach {one.point.mach:g}: {one.reason}.")
             continue
         t = one.trim
         angles = (f"{math.degrees(value):.1f}" for value in (t.elevator, t.body_flap, t.margin))
-        forces = f"{t.CL:.3f}", f"{t.CD:.3f}", f"{t.lift_to_drag:.2f}"
-        rows.append((*start, *angles, *forces, f"{100.0 * t.static.margin:+.1f} %"))
+        rows.append((*start, *angles, f"{100.0 * t.static.margin:+.1f} %"))
     note = "The trim with the largest margin of the elevator to its nearer limit. Outside the tables there is none."
     return Table("Trim", 2, note + "".join(reasons), columns, tuple(rows))
 

@@ -9,6 +9,7 @@ from spaceplane.aero.model.derivatives import CONTROL_DERIVATIVES, DAMPING, STAT
 from spaceplane.aero.model.from_derivatives import linear_model
 from spaceplane.aero.model.model import BASE
 from spaceplane.decks.source import Source
+from spaceplane.dynamics.flightpoint import FlightPoint, flight_point
 from spaceplane.dynamics.given_errors import NAMES, GivenError
 from spaceplane.errors import InputError
 from spaceplane.vehicle.controls import CONTROLS
@@ -59,7 +60,12 @@ def local_model(result: Mapping, point: str | None = None) -> Source:
     )
     mass = vehicle["mass"]
     properties = MassProperties(*(mass[key] for key in ("mass_kg", "Ixx_kgm2", "Iyy_kgm2", "Izz_kgm2")))
-    return Source(model, properties, _errors(chosen))
+    return Source(model, properties, _errors(chosen), point=_flown(chosen))
+
+
+def _flown(point: Mapping) -> FlightPoint:
+    angles = (point[key] for key in ("alpha_deg", "gamma_deg", "bank_deg"))
+    return flight_point(point["mach"], point["altitude_m"], *angles)
 
 
 def _errors(point: Mapping) -> dict[str, GivenError]:
