@@ -56,12 +56,15 @@ def generate(
     settings = settings or MeshSettings()
     _check(surface)
     fine_parts(surface.part_names, settings)
+    half = _symmetric(surface, settings)
+    if settings.target_cells is None:
+        place_grid(surface, settings, half)  # refuses a domain before anything is compiled
+    elif sizing is not None:
+        raise InputError(f"target_cells: {settings.target_cells}, must be None with a sizing")
     compile_kernels(progress)
     if settings.target_cells is None:
-        return _with_edges(surface, settings, _symmetric(surface, settings), sizing)
-    if sizing is not None:
-        raise InputError(f"target_cells: {settings.target_cells}, must be None with a sizing")
-    return _meet_target(surface, settings)
+        return _with_edges(surface, settings, half, sizing)
+    return _meet_target(surface, settings, half)
 
 
 def compile_kernels(progress: Progress | None = None) -> None:
@@ -103,9 +106,8 @@ def _symmetric(surface: Surface, settings: MeshSettings) -> bool:
     return found
 
 
-def _meet_target(surface: Surface, settings: MeshSettings) -> Mesh:
+def _meet_target(surface: Surface, settings: MeshSettings, half: bool) -> Mesh:
     """Choose the wall cell by secant steps on log(cells) over log(wall cell), from a cheap first mesh."""
-    half = _symmetric(surface, settings)
     goal = math.log(settings.target_cells)
     trial = math.log(math.sqrt(surface.area / max(settings.target_cells / 12.0, 20.0)))
     small, large = -math.inf, math.inf  # log wall cells known to give too many and too few cells
