@@ -6,6 +6,7 @@ import functools
 import json
 import math
 import os
+import re
 import subprocess
 import sys
 import time
@@ -600,6 +601,7 @@ def test_a_descent_says_how_likely_its_levels_are(capfd, tmp_path):
     code, out, _ = run(capfd, "fly", PUBLISHED, *options)
     assert code == 0
     assert "2 of 2 flight points trimmed" in out and " with " in out and "descent.html" in out
+    assert "worst level" in out and re.search(r"2\.5 +25\.0 +16\.6 +-9\.6 +60\.3 +-2\.8 +-20\.0", out)
     record = json.loads((tmp_path / "o" / "descent.json").read_text())
     assert record["uncertainty"] == {"all": {"share": 0.2}}
     assert all(v["samples"] == 60 for p in record["points"] for v in p["verdicts"])

@@ -156,6 +156,7 @@ def fly(
         descent = descend(model, found.mass, settings, tell)
     from spaceplane.report import descent as report
     from spaceplane.report import descent_likelihood
+    from spaceplane.report.descent_summary import print_descent
 
     files = report.write(descent, folder)
     write_json(report.record(descent), json_file)
@@ -164,6 +165,7 @@ def fly(
         for one in descent.points:
             if one.trim is None:
                 typer.echo(f"Mach {one.point.mach:g}: no trim: {one.reason}", err=True)
+        print_descent(descent)
         descent_likelihood.print_levels(descent)
         typer.echo(f"{len(trimmed)} of {len(descent.points)} flight points trimmed")
         typer.echo(f"report: {files['html']}")
