@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.sparse import coo_matrix
@@ -135,6 +135,37 @@ def assemble(
     )
 
 
+def joined(a: Assembly, root: np.ndarray) -> Assembly:
+    """Each cluster as one cell, which is as large as the one that stands for it; faces inside clusters are left out.
+
+    Args:
+        root: [cell] the cell that stands for each cluster.
+    """
+    stands = root == np.arange(len(root))
+    if stands.all():
+        return a
+    number = (np.cumsum(stands) - 1)[root]
+    count = int(stands.sum())
+    volume = np.bincount(number, a.volume, minlength=count)
+    center = np.stack([np.bincount(number, a.volume * x, minlength=count) for x in a.center.T], axis=1)
+    center = _means(center, volume, a.center[stands])
+    faces = number[a.faces]
+    between = faces[:, 0] != faces[:, 1]
+    return replace(
+        a,
+        volume=volume,
+        center=center,
+        size=a.size[stands],
+        cube=a.cube[stands],
+        faces=faces[between],
+        face_area=a.face_area[between],
+        face_center=a.face_center[between],
+        far_cell=number[a.far_cell],
+        mirror_cell=number[a.mirror_cell],
+        **_pieces(a, number[a.polygon_cell], np.ones(len(a.polygon_cell), bool)),
+    )
+
+
 def mirror(half: Assembly, partner: np.ndarray) -> Assembly:
     """Add the mirror image in y = 0, which makes mirror faces interior. `partner` [part] is the other side's."""
     flip = np.array([1.0, -1.0, 1.0])
@@ -225,7 +256,7 @@ def finish(
     faces, area, face_center = combine_faces(number[a.faces], a.face_area, a.face_center, n)
     far_cell = number[a.far_cell]
     wall = number[a.polygon_cell] >= 0
-    walls = _walls(a, number[a.polygon_cell], wall, len(part_names))
+    walls = _walls(a, number[a.polygon_cell], wall)
     wall_cell = walls[0]
     total = outward_sums(n, faces, area, far_cell, a.far_area)
     mesh = Mesh(
@@ -253,37 +284,54 @@ def finish(
     return mesh, number
 
 
-def _walls(a: Assembly, cell: np.ndarray, kept: np.ndarray, parts: int):
-    """Wall faces and their pieces from the surface polygons.
+def _walls(a: Assembly, cell: np.ndarray, kept: np.ndarray):
+    """Wall faces and their pieces from the surface polygons `kept` [polygon], which lie in these cells.
 
     Returns:
         wall cell, wall centre, piece wall, piece area vector, piece centre, piece part, wetted area of the wall.
     """
-    cell = cell[kept]
-    key = (cell * parts + a.polygon_part[kept]) * 2 + a.polygon_upstream[kept]
-    order = np.argsort(key, kind="stable")
-    key = key[order]
-    first = np.flatnonzero(np.concatenate([[True], key[1:] != key[:-1]])) if len(key) else np.zeros(0, np.int64)
-    size = a.polygon_size[kept][order]
-    weighted = np.concatenate([a.polygon_center[kept][order] * size[:, None], size[:, None]], axis=1)
-    sums = np.add.reduceat(weighted, first)
-    area = np.add.reduceat(a.polygon_area[kept][order], first)
-    piece_cell = key[first] // (2 * parts)
-    some = a.polygon_center[kept][order][first]
-    center = np.where(sums[:, 3:] > 1e-30, sums[:, :3] / np.maximum(sums[:, 3:], 1e-30), some)
-    new = np.flatnonzero(np.concatenate([[True], piece_cell[1:] != piece_cell[:-1]]))
-    wall_sums = np.add.reduceat(sums, new)
-    wall_center = np.where(
-        wall_sums[:, 3:] > 1e-30, wall_sums[:, :3] / np.maximum(wall_sums[:, 3:], 1e-30), center[new]
-    )
+    pieces = _pieces(a, cell, kept)
+    piece_cell, size, center = (pieces[f"polygon_{name}"] for name in ("cell", "size", "center"))
+    new = _starts(piece_cell)
+    wetted = np.add.reduceat(size, new)
+    wall_center = _means(np.add.reduceat(center * size[:, None], new), wetted, center[new])
     piece_wall = np.repeat(np.arange(len(new)), np.diff(np.concatenate([new, [len(piece_cell)]])))
-    part = (key[first] // 2) % parts
     return (
         piece_cell[new].astype(np.int32),
         wall_center,
         piece_wall.astype(np.int32),
-        area,
+        pieces["polygon_area"],
         center,
-        part.astype(np.int32),
-        wall_sums[:, 3],
+        pieces["polygon_part"].astype(np.int32),
+        wetted,
     )
+
+
+def _pieces(a: Assembly, cell: np.ndarray, kept: np.ndarray) -> dict[str, np.ndarray]:
+    """Polygons `kept` [polygon] of one part and orientation in the same `cell` [polygon] as one, by field."""
+    parts = int(a.polygon_part.max(initial=0)) + 1
+    key = (cell[kept] * parts + a.polygon_part[kept]) * 2 + a.polygon_upstream[kept]
+    order = np.argsort(key, kind="stable")
+    key = key[order]
+    first = _starts(key)
+    size, center = a.polygon_size[kept][order], a.polygon_center[kept][order]
+    total = np.add.reduceat(size, first)
+    return {
+        "polygon_cell": key[first] // (2 * parts),
+        "polygon_part": (key[first] // 2) % parts,
+        "polygon_upstream": key[first] % 2 == 1,
+        "polygon_area": np.add.reduceat(a.polygon_area[kept][order], first),
+        "polygon_size": total,
+        "polygon_center": _means(np.add.reduceat(center * size[:, None], first), total, center[first]),
+    }
+
+
+def _starts(key: np.ndarray) -> np.ndarray:
+    """Where runs of equal values begin."""
+    return np.flatnonzero(np.concatenate([[True], key[1:] != key[:-1]])) if len(key) else np.zeros(0, np.int64)
+
+
+def _means(sums: np.ndarray, size: np.ndarray, instead: np.ndarray) -> np.ndarray:
+    """[n, xyz] `sums` over `size` [n]; `instead` where there is no size."""
+    sized = size > 1e-30
+    return np.where(sized[:, None], sums / np.where(sized, size, 1.0)[:, None], instead)

@@ -216,9 +216,8 @@ def _generate(
 
     upstream = surface.area_vectors[:, 0] < 0.0
     whole = assembly.assemble(cut, leaves, shift, surface.part.astype(np.int64), upstream, half)
-    root = join_coarse_walls(whole, blocks)
-    joined = int((root != np.arange(len(root))).sum()) * (2 if half else 1)
-    root = assembly.join_small(whole, settings.merge_fraction, root)
+    whole = assembly.joined(whole, join_coarse_walls(whole, blocks))
+    root = assembly.join_small(whole, settings.merge_fraction)
     if half:
         n = len(root)
         whole = assembly.mirror(whole, mirrored_parts(surface.part_names))
@@ -237,7 +236,7 @@ def _generate(
     body *= grid.cell**3 * (2 if half else 1)
     wetted = np.bincount(whole.polygon_part, whole.polygon_size, minlength=len(surface.part_names)) * grid.cell**2
     enclosed = float(whole.volume[~kept].sum()) * grid.cell**3
-    merged = int((root != np.arange(len(root))).sum()) - joined
+    merged = int((root != np.arange(len(root))).sum())
     sizes = wall_sizes(np.floor(cut.thin[:, :3]).astype(np.int64) + shift, blocks)
     adapted = sizing is not None and not settings.edge_levels
     thin = thin_walls(cut, shift, surface, grid, sizes)

@@ -202,7 +202,9 @@ def parents(window: Window) -> Window:
     shape = high - low
     padded = np.zeros(2 * shape, bool)
     padded[_slices(window, 2 * low)] = window.array
-    return Window(low, padded.reshape(shape[0], 2, shape[1], 2, shape[2], 2).any(axis=(1, 3, 5)))
+    padded = padded[0::2] | padded[1::2]
+    padded = padded[:, 0::2] | padded[:, 1::2]
+    return Window(low, padded[:, :, 0::2] | padded[:, :, 1::2])
 
 
 def _mark(window: Window, low: np.ndarray, high: np.ndarray) -> Window:
