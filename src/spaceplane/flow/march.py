@@ -130,9 +130,9 @@ class Steering:
 def converged(history: History, settings: FlowSettings, patience: int = LEAST_PATIENCE) -> bool:
     """Whether a condition is good on the fine mesh: residual and force window together.
 
-    Either the residual fell by `residual_drop` with forces within the tolerance; or, where it gained nothing more in
-    `patience` windows, by half a decade more than `least_drop` with forces standing over two windows, or by
-    `least_drop` with forces standing over three. Then they must not have crept by more than twice as much over the
+    Either the residual fell by `residual_drop` with forces within the tolerance, twice that over two windows; or, where
+    it gained nothing more in `patience` windows, by half a decade more than `least_drop` with forces standing over two
+    windows, or by `least_drop` with forces standing over three. Then they must not have crept by more than twice as much over the
     whole `PATIENCE` either (or the later half of a shorter run): a slow wake drifts by little in a few windows.
     """
     window, tolerance, drop = settings.window, settings.force_tolerance, history.drop()
@@ -140,7 +140,7 @@ def converged(history: History, settings: FlowSettings, patience: int = LEAST_PA
     if length <= window:
         return False
     if drop >= settings.residual_drop:
-        return history.spread(window) < tolerance
+        return history.spread(window) < tolerance and history.spread(2 * window) < 2.0 * tolerance
     windows = 2 if drop >= settings.least_drop + 0.5 else 3
     if drop < settings.least_drop or length <= windows * window or history.gain(patience * window) > WORTH_WAITING:
         return False
