@@ -132,8 +132,9 @@ def converged(history: History, settings: FlowSettings, patience: int = LEAST_PA
 
     Either the residual fell by `residual_drop` with forces within the tolerance, twice that over two windows; or, where
     it gained nothing more in `patience` windows, by half a decade more than `least_drop` with forces standing over two
-    windows, or by `least_drop` with forces standing over three. Then they must not have crept by more than twice as much over the
-    whole `PATIENCE` either (or the later half of a shorter run): a slow wake drifts by little in a few windows.
+    windows, or by `least_drop` with forces standing over three. Then they must not have crept by more than twice as
+    much over the whole `PATIENCE` either (or the later half of a shorter run): a slow wake drifts by little in a few
+    windows.
     """
     window, tolerance, drop = settings.window, settings.force_tolerance, history.drop()
     length = len(history.residual)
