@@ -7,7 +7,7 @@ import pytest
 
 from spaceplane.flow.bounds import at_bound, bounded, least_values
 from spaceplane.flow.compiled import LANES
-from spaceplane.flow.deadwater import dead_water, thin_air
+from spaceplane.flow.deadwater import dead_water
 from spaceplane.flow.freezing import Freezer
 from spaceplane.flow.march import Caution, Steering, highest_cfl
 from spaceplane.flow.reconstruction import shock_weight, spare_oblique
@@ -48,20 +48,6 @@ def test_attached_flow_is_no_dead_water(mach):
 def test_still_air_at_base_pressure_is_calmed(mach):
     assert calming(0.1, -0.1 / mach, mach) == 1.0
     assert 0.0 < calming(0.6, 0.0, mach) < 1.0
-
-
-@pytest.mark.parametrize(("mach", "most"), [(2.0, 0.02), (2.5, 0.02), (3.0, 0.35), (10.0, 0.35)])
-def test_only_thin_air_loses_its_slopes(mach, most):
-    """All of them at the least density, none at the free stream's nor above a third of it, nothing without calming."""
-    thinnest = least_values(np.array([mach]), GAMMA)[0, 0]
-    weight = getattr(thin_air, "py_func", thin_air)
-
-    def at(density, share=1.0):
-        return weight(*(np.float64(v) for v in (density, thinnest, share)))
-
-    assert at(thinnest) == 1.0 and at(1.0) == at(most) == 0.0
-    assert 0.0 < at(0.5 * most) < 1.0
-    assert at(thinnest, 0.0) == 0.0
 
 
 def test_the_shock_sensor_needs_compression_and_has_no_jump():

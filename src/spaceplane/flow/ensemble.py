@@ -151,7 +151,6 @@ class Ensemble:
             self.smallness,
             self.gamma,
             self.per_pressure,
-            self.least,
             self.dtype(self.settings.wake_calming),
             self.hold,
             self.frozen,

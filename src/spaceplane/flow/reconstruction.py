@@ -8,7 +8,7 @@ import numpy as np
 from numba import prange
 
 from spaceplane.flow.compiled import LANES, PRS, RHO, ROW, VX, VY, VZ, distinct, inlined, kernel
-from spaceplane.flow.deadwater import dead_water, thin_air
+from spaceplane.flow.deadwater import dead_water
 from spaceplane.flow.limiters import barth_jespersen, venkatakrishnan
 
 FINEST = 255
@@ -105,7 +105,6 @@ def gradient_chunk(
     smallness,
     gamma,
     per_pressure,
-    least,
     calming,
     hold,
     frozen,
@@ -170,7 +169,6 @@ def gradient_chunk(
             v = rows[i, VY + n]
             w = rows[i, VZ + n]
             calm = dead_water(u, v, w, rows[i, PRS + n], p0, per_pressure[n], calming)
-            calm = max(calm, thin_air(rows[i, RHO + n], least[0, n], calming))
             factor = (one - cut[n]) * (one - calm)
             keep[RHO + n] = factor
             keep[VX + n] = factor
@@ -210,7 +208,6 @@ def gradients(
     smallness,
     gamma,
     per_pressure,
-    least,
     calming,
     hold,
     frozen,
@@ -219,15 +216,14 @@ def gradients(
     """Fill `gradient` [cell, axis, 5 x lane] and `sensor` [cell, lane].
 
     Gradients come out limited, and scaled by (1 - sensor) in shocks with slow flow behind them (see `spare_oblique`)
-    and by (1 - dead_water) or (1 - thin_air) in wakes.
+    and by (1 - dead_water) in wakes.
 
     Args:
         state: [cell, 5, lane] rho, u, v, w, p.
         limiter: number of the limiter.
         theta_low, theta_high: bounds of the weight of HLLE.
         smallness: eps^2 of the limiter = min(smallness * size^3, 1e-2) on the local scale of each variable.
-        per_pressure: [lane] 1/q_inf; least: [2, lane] least density and pressure.
-        calming: most that is taken out of slopes in dead water and thin air.
+        per_pressure: [lane] 1/q_inf; calming: most that is taken out of slopes in dead water.
         hold: [lane] 1 where the sensor may only rise from here on, else 0.
         frozen: [lane] 1 where sensor and factors on the gradients stay what they are, else 0.
         limits: [cell, 5 x lane] those factors on 0 to 255, kept up to date for lanes that freeze later.
@@ -259,7 +255,6 @@ def gradients(
             smallness,
             gamma,
             per_pressure,
-            least,
             calming,
             hold,
             frozen,

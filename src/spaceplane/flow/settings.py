@@ -28,8 +28,8 @@ class FlowSettings:
         limiter: name in `limiters.LIMITERS`.
         limiter_constant: Venkatakrishnan's K on the body length; variations below (K h / L)^1.5 of the local scale
             are left alone.
-        wake_calming: most that slopes are reduced by in dead water behind blunt bases and, from Mach 2.75 up, in thin
-            air (see `deadwater`); 0 switches it off.
+        wake_calming: most that slopes are reduced by in dead water behind blunt bases (see `deadwater`); 0 switches it
+            off.
         low_mach: local Mach number below which the low-Mach correction stops shrinking the normal jump; 1 switches it
             off.
         wall_stiffness: share of the acoustic response to flow through the wall added to the wall pressure (0 to 1).
