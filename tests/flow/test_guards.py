@@ -1,6 +1,8 @@
-"""Dead water, the shock sensor, total enthalpy, frozen limits and steps taken back."""
+"""Dead water, the shock sensor, total enthalpy, frozen limits, the end game and steps taken back."""
 
 from __future__ import annotations
+
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,7 +11,8 @@ from spaceplane.flow.bounds import at_bound, bounded, least_values
 from spaceplane.flow.compiled import LANES
 from spaceplane.flow.deadwater import dead_water
 from spaceplane.flow.freezing import Freezer
-from spaceplane.flow.march import Caution, Steering, highest_cfl
+from spaceplane.flow.history import History
+from spaceplane.flow.march import Caution, Steering, creeps, highest_cfl
 from spaceplane.flow.reconstruction import shock_weight, spare_oblique
 from spaceplane.flow.residual import guarded
 from spaceplane.flow.settings import FlowSettings
@@ -184,6 +187,72 @@ def test_bases_at_high_mach_numbers_have_a_steady_state():
     patient = FlowSettings(residual_drop=16.0, least_drop=16.0, iterations=80)
     solution = solve(mesh, FlowConditions(mach, np.full(3, np.radians(5.0)), 0.0 * mach), patient)
     assert all(-record.residual_history.min() > 3.5 for record in solution.records)
+
+
+def test_the_end_game_falls_on_where_bounds_kept_the_residual_up():
+    """Cells behind a base that reach their least density and leave it again keep a residual at four decades."""
+    mesh = generate(bodies.cone(np.radians(15.0)), MeshSettings(wall_cell=0.05, far_field=2.0))
+    mach = np.array([2.8, 3.8, 10.0])
+    conditions = FlowConditions(mach, np.full(3, np.radians(5.0)), 0.0 * mach)
+    deep = FlowSettings(residual_drop=5.5, precision="double", iterations=120)
+    closed, open_ended = solve(mesh, conditions, deep), solve(mesh, conditions, replace(deep, end_game_drop=16.0))
+    assert all(record.residual_drop > 5.5 and record.iterations < 90 for record in closed.records)
+    for record, other in zip(closed.records, open_ended.records, strict=True):
+        assert -other.residual_history.min() < 4.6
+        force = other.window_mean
+        np.testing.assert_allclose(record.window_mean, force, rtol=0, atol=3e-4 * np.linalg.norm(force))
+
+
+def test_the_end_game_is_for_runs_that_ask_for_more_than_forces_need():
+    def history(residual, force=1.0):
+        return History(residual=list(residual), force=[np.array([force, 0.0, 0.1])] * len(residual))
+
+    deep, usual = FlowSettings(residual_drop=5.0), FlowSettings()
+    stood = np.concatenate([np.geomspace(1.0, 1e-3, 10), np.full(20, 9e-4)])
+    assert creeps(history(stood), deep) and not creeps(history(stood), usual)
+    assert not creeps(history(np.maximum(stood, 2e-3)), deep)
+    assert not creeps(history(np.geomspace(1.0, 1e-4, 30)), deep)
+    assert not creeps(history(stood[:20]), deep)
+    swinging = history(stood)
+    swinging.force[-5] = np.array([1.01, 0.0, 0.1])
+    assert not creeps(swinging, deep)
+    assert not creeps(history(stood), replace(deep, end_game_drop=5.0))
+
+
+def test_a_closing_lane_is_never_let_go_until_another_flow_takes_it():
+    freezer, lanes = Freezer(), np.ones(LANES)
+    freezer.close([2])
+    freezer.update([Standing(gain=1.0, spread=0.1)] * LANES, 100.0 * lanes, lanes, 2.0 * lanes)
+    assert freezer.frozen[2] and freezer.held[2] and freezer.frozen.sum() == 1
+    freezer.begin(np.array([2]))
+    assert not (freezer.frozen | freezer.held | freezer.closing).any()
+
+
+def test_cells_kept_at_their_bound_stay_and_neighbours_do_not_count_on_them():
+    ensemble = ensemble_on(sphere(8, 6))
+    rng = np.random.default_rng(6)
+    ensemble.state *= 1 + 0.1 * rng.uniform(-1, 1, ensemble.state.shape)
+    kept = np.array([3, 40, 41])
+    ensemble.state[kept, 0, 1] = ensemble.least[0, 1]
+    ensemble.state[kept, 0, 0] = ensemble.least[0, 0]
+    marked = np.arange(LANES) == 1
+    ensemble.keep_bounded(marked)
+    np.testing.assert_array_equal(ensemble.kept[1], kept)
+    before = ensemble.state.copy()
+    for _ in range(3):
+        ensemble.evaluate()
+        ensemble.correct(np.full(LANES, 5.0))
+        assert not ensemble.change[kept, :, 1].any()
+        ensemble.apply(0.4, np.ones(LANES, dtype=bool))
+    np.testing.assert_array_equal(ensemble.state[kept, :, 1], before[kept, :, 1])
+    assert (ensemble.state[kept, :, 0] != before[kept, :, 0]).any()
+    others = np.setdiff1d(np.arange(len(before)), kept)
+    assert (ensemble.state[others, :, 1] != before[others, :, 1]).any(axis=1).all()
+    ensemble.state[7, 4, 1] = ensemble.least[1, 1]
+    ensemble.keep_bounded(marked)
+    np.testing.assert_array_equal(ensemble.kept[1], [3, 7, 40, 41])
+    ensemble.seat(1, 0, None)
+    assert not ensemble.kept
 
 
 def test_the_largest_cfl_number_falls_with_the_mach_number_and_stays_within_what_is_asked():

@@ -15,6 +15,10 @@ deg less 39 deg), which single precision cannot hold and in which no flow comes 
 transients only, and a wake that is given more than it can draw stands otherwise."""
 
 
+NEAR = 1.00001
+"""Density or pressure, on its least value, up to which a cell stands at the bound."""
+
+
 def least_values(mach: np.ndarray, gamma: float) -> np.ndarray:
     """[2, condition] least density and pressure, in the scaled units of `Solution`.
 
@@ -35,5 +39,11 @@ def bounded(r, p, dr, dp, thinnest, faintest):
 @inlined
 def at_bound(r, p, thinnest, faintest):
     """Whether a cell stands at the least density or pressure: what it draws from its neighbours is the bound's."""
-    more = type(r)(1.00001)
+    more = type(r)(NEAR)
     return r <= more * thinnest or p <= more * faintest
+
+
+def cells_at_bound(state: np.ndarray, least: np.ndarray) -> np.ndarray:
+    """Indices of the cells of `state` [cell, 5] that stand at one of the `least` [2] values."""
+    near = state.dtype.type(NEAR) * least
+    return np.flatnonzero((state[:, 0] <= near[0]) | (state[:, 4] <= near[1]))

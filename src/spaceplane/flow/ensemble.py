@@ -6,7 +6,7 @@ import numpy as np
 
 from spaceplane.flow import implicit
 from spaceplane.flow.acceleration import Anderson, apply_step, depth_for
-from spaceplane.flow.bounds import least_values
+from spaceplane.flow.bounds import cells_at_bound, least_values
 from spaceplane.flow.compiled import LANES, ROW
 from spaceplane.flow.equilibrium import Heating
 from spaceplane.flow.fluxes import FLUXES
@@ -44,6 +44,7 @@ class Ensemble:
         state, residual, change: [cell, 5, lane]; passed: products that a sweep leaves to the next.
         gradient: [cell, axis, 5 x lane]; sensor: [cell, lane]; inverse: [cell, 25 x lane] inverse diagonal blocks.
         pace: [cell, lane] share of the lane's CFL number that a cell marches with.
+        kept: cells of a lane that stay as they are, by lane.
         gas: for the kernels; `heating` keeps it up to date, None for the perfect gas.
     """
 
@@ -76,6 +77,7 @@ class Ensemble:
         self.frozen = np.zeros(LANES, dtype)
         self.limits = np.zeros((cells, ROW), np.uint8)
         self.pace = np.ones((cells, LANES), dtype)
+        self.kept: dict[int, np.ndarray] = {}
         self.inverse = np.zeros((cells, 25 * LANES), dtype)
         self.per_pressure, self.ceiling = np.empty((2, LANES), dtype)
         self.least = np.empty((2, LANES), dtype)
@@ -94,6 +96,7 @@ class Ensemble:
         self.frozen[lane] = 0
         self.sensor[:, lane] = 0
         self.pace[:, lane] = 1
+        self.kept.pop(lane, None)
         self.mirror(self.state, np.arange(LANES) == lane)
         self.anderson.forget(lane, self.free)
 
@@ -205,8 +208,20 @@ class Ensemble:
             self.inverse,
         )
 
+    def keep_bounded(self, lanes: np.ndarray) -> None:
+        """From here on cells at their least density or pressure stay as they are, in the lanes marked true.
+
+        Those that come to stand there later join them.
+        """
+        for lane in np.flatnonzero(lanes):
+            cells = cells_at_bound(self.state[:, :, lane], self.least[:, lane])
+            self.kept[lane] = np.union1d(self.kept[lane], cells) if lane in self.kept else cells
+
     def relax(self) -> None:
         """Solve for `change` by symmetric Gauss-Seidel sweeps from zero."""
+        # Without a diagonal block a cell does not change, and its neighbours do not count on it.
+        for lane, cells in self.kept.items():
+            self.inverse[cells, lane::LANES] = 0
         self.passed[:] = 0
         for forward in (True, False) * self.settings.sweeps:
             implicit.sweep(
@@ -245,6 +260,7 @@ class Ensemble:
         """
         t = self.topology
         weights = self.anderson.weights(t, self.change, calm)
+        before = {lane: self.state[cells, :, lane] for lane, cells in self.kept.items()}
         limited = np.empty((len(t.chunk_cells) - 1, LANES), self.dtype)
         apply_step(
             t.part(Chunks),
@@ -262,6 +278,11 @@ class Ensemble:
             self.pace,
             limited,
         )
+        step = self.anderson.last_step.reshape(self.state.shape)
+        for lane, cells in self.kept.items():
+            # Differences from before they were kept are still among those that are combined.
+            self.state[cells, :, lane] = before[lane]
+            step[cells, :, lane] = 0
         return limited.sum(axis=0, dtype=np.float64) / self.mesh.cells
 
     def undo(self, lanes: np.ndarray) -> None:

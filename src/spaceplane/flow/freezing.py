@@ -5,6 +5,10 @@ still. Where a residual gains nothing any more, the lane's sensor may first only
 nothing is gained, the lane keeps the sensor and the factors on its slopes: what is solved is the second-order scheme
 with the limits of a flow whose forces already stand, and it converges (V. Venkatakrishnan, J. Comput. Phys. 118 (1995)
 120-130, shows both the stall and what freezing does to it).
+
+From there a base at high Mach number may still keep a residual up: the near vacuum behind it (see `bounds`) takes in a
+few cells in each iteration and gives others back, and each of them stirs the wake. A run that is asked for more decades
+than forces need therefore has an end game: limits, and the cells that stand at their bound, stay to the end.
 """
 
 from __future__ import annotations
@@ -41,20 +45,25 @@ class Freezer:
     Attributes:
         held: [lane] whether the shock sensor may only rise.
         frozen: [lane] whether sensor and limits are kept.
+        closing: [lane] whether it is in its end game, frozen to the end.
     """
 
     def __init__(self):
-        self.held, self.frozen = np.zeros((2, LANES), dtype=bool)
+        self.held, self.frozen, self.closing = np.zeros((3, LANES), dtype=bool)
         self._mark, self._rest = np.zeros((2, LANES))
 
     def begin(self, lanes: np.ndarray) -> None:
         """Let the lanes of these indices go, which now hold other flows."""
-        self.held[lanes] = self.frozen[lanes] = False
+        self.held[lanes] = self.frozen[lanes] = self.closing[lanes] = False
         self._rest[lanes] = 0
+
+    def close(self, lanes: np.ndarray) -> None:
+        """Begin the end game of the lanes of these indices."""
+        self.held[lanes] = self.frozen[lanes] = self.closing[lanes] = True
 
     def update(self, histories: Sequence[History], norms: np.ndarray, best: np.ndarray, drop: np.ndarray) -> None:
         """Judge all lanes by their histories, residual, the best one so far and its drop in decades [lane]."""
-        thawed = self.frozen & (norms > THAWED_BY * self._mark)
+        thawed = self.frozen & ~self.closing & (norms > THAWED_BY * self._mark)
         self.frozen &= ~thawed
         self._rest = np.where(thawed, REST, np.maximum(self._rest - 1, 0))
         for lane in np.flatnonzero(~self.frozen):

@@ -127,6 +127,24 @@ class Steering:
         return np.maximum(self.cfl * factor, min(0.5, self.caution.cfl_start))
 
 
+def stands(history: History, settings: FlowSettings) -> bool:
+    """Whether the force stands within the tolerance over the window, within twice that over two windows."""
+    window, tolerance = settings.window, settings.force_tolerance
+    return history.spread(window) < tolerance and history.spread(2 * window) < 2.0 * tolerance
+
+
+def creeps(history: History, settings: FlowSettings) -> bool:
+    """Whether a condition needs the end game: asked for more decades than it has when its force stands, it gains no
+    more."""
+    return (
+        settings.residual_drop > settings.end_game_drop
+        and history.drop() >= settings.end_game_drop
+        and history.age > 2 * settings.window
+        and history.gain(settings.window) <= WORTH_WAITING
+        and stands(history, settings)
+    )
+
+
 def converged(history: History, settings: FlowSettings, patience: int = LEAST_PATIENCE) -> bool:
     """Whether a condition is good on the fine mesh: residual and force window together.
 
@@ -141,7 +159,7 @@ def converged(history: History, settings: FlowSettings, patience: int = LEAST_PA
     if length <= window:
         return False
     if drop >= settings.residual_drop:
-        return history.spread(window) < tolerance and history.spread(2 * window) < 2.0 * tolerance
+        return stands(history, settings)
     windows = 2 if drop >= settings.least_drop + 0.5 else 3
     if drop < settings.least_drop or length <= windows * window or history.gain(patience * window) > WORTH_WAITING:
         return False
@@ -221,6 +239,8 @@ def march(
         age = np.array([history.age for history in here])
         if ensemble.order == 2:
             freezer.update(here, norms, steering.best, drop)
+            freezer.close([lane for lane in np.flatnonzero(active) if creeps(here[lane], ensemble.settings)])
+            ensemble.keep_bounded(freezer.closing)
             ensemble.hold[:] = freezer.held
             ensemble.frozen[:] = freezer.frozen
         quiet = (drop > FORMED_AGAIN_DROP) & (norms < 2.0 * steering.best) & ~undone

@@ -44,6 +44,8 @@ class FlowSettings:
         coarse_iterations: most iterations on each coarse level.
         coarse_levels: number of coarse levels to start on.
         residual_drop: decades that the density residual must fall on the fine mesh to stop at once.
+        end_game_drop: decades from which on a run that asks for more keeps limits and cells at their bound where its
+            forces stand and its residual creeps (see `freezing`).
         least_drop: decades below which nothing is called converged.
         force_tolerance: half peak-to-peak of the force over the window, on the force's size, to stop after
             `least_drop`.
@@ -66,6 +68,7 @@ class FlowSettings:
     coarse_iterations: int = 60
     coarse_levels: int = 3
     residual_drop: float = 3.0
+    end_game_drop: float = 3.0
     least_drop: float = 1.5
     force_tolerance: float = 5e-4
     window: int = 10
@@ -84,6 +87,7 @@ class FlowSettings:
             ("cfl_start", 0.05, 1e4),
             ("cfl_max", 0.05, 1e6),
             ("residual_drop", 0.1, 16.0),
+            ("end_game_drop", 0.1, 16.0),
             ("least_drop", 0.0, 16.0),
             ("force_tolerance", 0.0, 1.0),
             ("sweeps", 1, 20),
