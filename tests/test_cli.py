@@ -330,6 +330,7 @@ def test_unwritable_flow_output(capfd, tmp_path, option, name):
         ("--accuracy", "0.001%"), ("--accuracy", "90%"), ("--accuracy", "1"), ("--accuracy", "nan"),
         ("--adapt", "4"), ("--adapt", "0.5"), ("--edges", "6"), ("--edges", "-1"), ("--edges", "1.5"), ("--edges", "a"),
         ("--edges", ""), ("--edges", "2,4,4"), ("--edges", "2,0"), ("--edges", "2,99"), ("--edges", "1,4"),
+        ("--decades", "1"), ("--decades", "11"), ("--decades", "deep"),
     ],
 )  # fmt: skip
 def test_bad_flow_options(capfd, tmp_path, option, text):
@@ -743,6 +744,14 @@ def test_a_wall_thinner_than_two_cells_is_a_warning_with_the_place(capfd, tmp_pa
     assert pyvista.read(tmp_path / "w.vtu").n_cells == rows[0]["cells"]
 
 
+def test_residuals_fall_as_far_as_asked(capfd, tmp_path):
+    body, record = wedge(tmp_path / "w.stl"), tmp_path / "w.json"
+    deep = ("--cell", 0.2, "--decades", 6, "--precision", "fp64", "--json", record)
+    code, _, err = run(capfd, "flow", body, "--mach", "2,3", "--alpha", 4, *FLOW, *deep)
+    assert code == 0, err
+    assert all(r["converged"] and r["residual_drop"] >= 6 for r in json.loads(record.read_text()))
+
+
 def test_local_inclination_from_the_command_line(capfd, tmp_path):
     """The records of the Euler solver, without a mesh; a wedge of 5.7 deg at Mach 3 in the plane."""
     from spaceplane.aero.exact.oblique import weak_shock_cp
@@ -777,6 +786,7 @@ def test_local_inclination_from_the_command_line(capfd, tmp_path):
         (("--method", "tangent", "--vtu", "a.vtu"), "--vtu"),
         (("--method", "tangent", "--vtp", "a.vtp"), "--vtp"),
         (("--method", "tangent", "--precision", "fp64"), "--precision"),
+        (("--method", "tangent", "--decades", "4"), "--decades: 4, allowed with --method euler only"),
         (("--method", "tangent", "--accuracy", "1%"), "--accuracy: 1%, allowed with --method euler only"),
         (("--method", "tangent", "--uncertainty", "mesh"), "--uncertainty: mesh, allowed with --method euler only"),
     ],

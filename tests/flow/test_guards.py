@@ -210,6 +210,8 @@ def test_the_end_game_is_for_runs_that_ask_for_more_than_forces_need():
     deep, usual = FlowSettings(residual_drop=5.0), FlowSettings()
     stood = np.concatenate([np.geomspace(1.0, 1e-3, 10), np.full(20, 9e-4)])
     assert creeps(history(stood), deep) and not creeps(history(stood), usual)
+    risen = stood * np.r_[np.ones(20), np.full(10, 3.0)]
+    assert creeps(history(risen), deep)
     assert not creeps(history(np.maximum(stood, 2e-3)), deep)
     assert not creeps(history(np.geomspace(1.0, 1e-4, 30)), deep)
     assert not creeps(history(stood[:20]), deep)

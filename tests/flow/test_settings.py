@@ -48,3 +48,10 @@ def test_conditions_no_flow_can_have(mach, alpha, beta, word):
 def test_conditions_come_back_as_float_arrays():
     good = check(FlowConditions([2], [0.1], [0]))
     assert good.mach.dtype == np.float64 and len(good) == 1
+
+
+def test_deeper_runs_have_more_iterations():
+    usual = FlowSettings()
+    deep, shallow = usual.falling(6.0), usual.falling(2.0)
+    assert (deep.residual_drop, deep.iterations) == (6.0, 2 * usual.iterations)
+    assert (shallow.residual_drop, shallow.iterations) == (2.0, usual.iterations)

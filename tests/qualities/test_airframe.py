@@ -248,6 +248,15 @@ def test_sideslip_per_k_is_free_of_the_size_of_the_step():
     assert of(assess_airframe(half), "3.3.4").value > of(assess_airframe(full), "3.3.4").value
 
 
+def test_sideslip_of_small_inputs_is_shown_but_not_judged():
+    """Its figure is in no public copy; the greatest change of sideslip is that to both sides together."""
+    found = assess_airframe(airframe())
+    shown = of(found, "3.3.2.4.1")
+    sides = [of(found, "3.3.2.4", side).value for side in ("adverse", "proverse")]
+    assert shown.value == pytest.approx(sum(sides), rel=1e-9) and shown.value > 0
+    assert not shown.applicable and shown.level is None and "not judged" in shown.note and "ψ_beta" in shown.note
+
+
 def test_adverse_yaw_gives_adverse_sideslip():
     adverse, proverse = (
         [of(assess_airframe(airframe(level_point(alpha_deg=0.0), Cn_aileron=c)), "3.3.2.4", side).value for side in

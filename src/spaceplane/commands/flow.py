@@ -76,6 +76,7 @@ def flow(
     uncertainty: options.Uncertainty = None,
     accuracy: options.AccuracyText = None,
     precision: options.Precision = "fp32",
+    decades: options.Decades = "3",
     friction: options.Friction = "off",
     base: options.Base = "inviscid",
     wall_temperature: options.WallTemperature = None,
@@ -98,7 +99,7 @@ def flow(
     turning = numbers("--rates", rates, "rad/s", 3)
     sizes = positive("--area", area, "m2"), positive("--length", length, "m"), positive("--span", span, "m")
     center = tuple(numbers("--moment-center", moment_center, "m", 3))
-    solver_precision = options.precision(precision)
+    solver_precision, fall = options.precision(precision), options.decades(decades)
     increments = options.increment_settings(friction, base, wall_temperature, emissivity, transition_reynolds)
     gas = options.gas_name(gas)
     ambient = _ambient(altitude, friction, any(turning), gas)
@@ -125,6 +126,7 @@ def flow(
         given["--base"] = base if base != "inviscid" else None
         given["--gas"] = gas if gas != PERFECT else None
         given["--precision"] = precision if solver_precision != "single" else None
+        given["--decades"] = decades if decades != "3" else None
         _refuse_options(given, f"allowed with --method {EULER} only")
         return _inclination(body, method, grid, reference, json_file)
     from spaceplane.mesh.settings import MeshSettings
@@ -141,7 +143,7 @@ def flow(
     from spaceplane.aero.free_streams import FreeStreams
     from spaceplane.flow.settings import FlowSettings
 
-    settings = FlowSettings(precision=solver_precision)
+    settings = FlowSettings(precision=solver_precision).falling(fall)
     on_sound = tuple(rate / ambient.speed_of_sound for rate in turning)
     streams = FreeStreams(*grid, on_sound, increments, ambient, gas)
     if mesh_file is not None:

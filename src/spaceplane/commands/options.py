@@ -58,6 +58,14 @@ Adapt = Annotated[
 Precision = Annotated[
     str, typer.Option("--precision", metavar="fp32|fp64", help="Floating-point precision of the flow solver.")
 ]
+Decades = Annotated[
+    str,
+    typer.Option(
+        "--decades",
+        metavar="D",
+        help="Decades (2 to 10) that each residual must fall; rounding ends fp32 at 4 to 5.",
+    ),
+]
 Gas = Annotated[
     str,
     typer.Option(
@@ -109,6 +117,9 @@ TransitionReynolds = Annotated[
     str | None,
     typer.Option("--transition-reynolds", metavar="RE", help="With turbulent friction: laminar below this number."),
 ]
+
+SHALLOWEST, DEEPEST = 2.0, 10.0
+"""Decades that residuals may be asked to fall."""
 
 PRECISIONS = {"fp32": "single", "single": "single", "fp64": "double", "double": "double"}
 
@@ -268,3 +279,15 @@ def precision(text: str) -> str:
     if text not in PRECISIONS:
         raise InputError(f"--precision: {text!r}, allowed are fp32 and fp64")
     return PRECISIONS[text]
+
+
+def decades(text: str) -> float:
+    """Decades that residuals must fall.
+
+    Raises:
+        InputError: not a number from 2 to 10.
+    """
+    value = number("--decades", text)
+    if not SHALLOWEST <= value <= DEEPEST:
+        raise InputError(f"--decades: {text.strip()}, allowed are {SHALLOWEST:g} to {DEEPEST:g}")
+    return value

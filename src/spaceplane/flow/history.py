@@ -40,6 +40,10 @@ class History:
             return 0.0
         return float(np.log10(self.first / max(self.residual[-1], 1e-300)))
 
+    def best_drop(self) -> float:
+        """Decades that the best residual lies below the first."""
+        return float(np.log10(self.first / max(min(self.residual), 1e-300))) if self.residual else 0.0
+
     def gain(self, window: int) -> float:
         """Decades by which the best residual of the last `window` iterations is below the best one before them;
         infinite where there is none before."""

@@ -21,6 +21,9 @@ ACCELERATED_BELOW_MACH, ACCELERATED_AFTER_DROP = 2.0, 2.3
 WORTH_WAITING = 0.1
 """Decades that a residual must gain in some windows to be worth waiting for, once the forces stand."""
 
+CREEPING = 10
+"""Iterations in which a residual that gains no more than that creeps, and needs the end game if it is to fall on."""
+
 PATIENCE, LEAST_PATIENCE = 8, 2
 """Those windows; and the fewer ones by which a condition that has used up its iterations is judged. Some residuals
 stand still at two decades and a half for fifty iterations before they go on falling."""
@@ -134,14 +137,13 @@ def stands(history: History, settings: FlowSettings) -> bool:
 
 
 def creeps(history: History, settings: FlowSettings) -> bool:
-    """Whether a condition needs the end game: asked for more decades than it has when its force stands, it gains no
-    more."""
+    """Whether a condition needs the end game: asked for more decades than its best residual has, it gains no more."""
     return (
         settings.residual_drop > settings.end_game_drop
-        and history.drop() >= settings.end_game_drop
-        and history.age > 2 * settings.window
-        and history.gain(settings.window) <= WORTH_WAITING
-        and stands(history, settings)
+        and history.age > 2 * CREEPING
+        and history.best_drop() >= settings.end_game_drop
+        and history.gain(CREEPING) <= WORTH_WAITING
+        and history.spread(CREEPING) < settings.force_tolerance
     )
 
 

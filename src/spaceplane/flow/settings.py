@@ -101,6 +101,11 @@ class FlowSettings:
             if not (isinstance(value, int | float) and math.isfinite(value) and low <= value <= high):
                 raise InputError(f"{name}: {value} is not allowed; {low} to {high}")
 
+    def falling(self, decades: float) -> FlowSettings:
+        """These settings for residuals that fall by `decades`, with more iterations where that is more than now."""
+        more = max(1.0, decades / self.residual_drop)
+        return replace(self, residual_drop=decades, iterations=round(more * self.iterations))
+
     @property
     def dtype(self) -> type:
         """numpy type of the working precision."""

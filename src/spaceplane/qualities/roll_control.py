@@ -18,6 +18,7 @@ from spaceplane.dynamics.statespace import StateSpace
 from spaceplane.errors import InputError
 from spaceplane.qualities import limits, roll_figures
 from spaceplane.qualities.airframe import Airframe
+from spaceplane.qualities.roll_oscillation import RollOscillation, roll_oscillation
 from spaceplane.qualities.roll_step import lateral_part, roll_row, step_states
 from spaceplane.qualities.verdict import (
     AIRFRAME,
@@ -34,6 +35,7 @@ from spaceplane.qualities.verdict import (
 STEP = 0.02  # s
 DOUBLINGS = 10  # 1024 steps, 20.5 s
 LEAST_WINDOW = 2.0  # s of 3.3.2.4
+SMALL_SIDESLIP = "sideslip per k of small inputs"
 NO_AILERON = "not applicable: no aileron with a rolling moment is known"
 
 
@@ -67,6 +69,10 @@ class RollResponse:
     def bank_at(self, time: float) -> float:
         """Change of the bank angle, rad, after a time, s."""
         return float(np.interp(time, self.time, self.bank))
+
+    def window(self) -> float:
+        """Time, s, within which sideslip counts: half a period of the oscillation, 2 s at least."""
+        return max(LEAST_WINDOW, self.half_period or 0.0)
 
     def oscillation(self) -> float:
         """Roll rate at the first minimum after the first peak, as a ratio to that at the peak; 1 without a minimum."""
@@ -117,11 +123,12 @@ def requirement(context: Context, speed_range: str) -> tuple[float, Sequence[flo
 
 
 def verdicts(airframe: Airframe, system: StateSpace, context: Context) -> list[Verdict]:
-    """Roll rate and bank angle oscillations, adverse and proverse sideslip, time to bank."""
+    """Roll rate and bank angle oscillations, sideslip of large and small inputs, time to bank."""
     quantities = (
         ("roll_rate_oscillation", "roll rate at first minimum over first peak"),
         ("sideslip_excursion", "adverse sideslip per k"),
         ("sideslip_excursion", "proverse sideslip per k"),
+        ("sideslip_excursion_small", SMALL_SIDESLIP),
         ("roll_control", "time to bank"),
     )
     limit = airframe.aileron_limit()
@@ -136,6 +143,7 @@ def verdicts(airframe: Airframe, system: StateSpace, context: Context) -> list[V
         _oscillation(response, context),
         *roll_figures.verdicts(system, context),
         *(_sideslip(response, side, wanted, context) for side in ("adverse", "proverse")),
+        _small_sideslip(response, roll_oscillation(system), wanted, context),
         _time_to_bank(response, wanted, limit, airframe.speed_range, context),
     ]
 
@@ -159,7 +167,7 @@ def _sideslip(response: RollResponse, side: str, wanted: tuple[float, Sequence[f
     quantity = f"{side} sideslip per k"
     angle, times = wanted
     highs = limits.specification()["sideslip_excursion"][context.category][side]
-    window = max(LEAST_WINDOW, response.half_period or 0.0)
+    window = response.window()
     within = response.sideslip[response.time <= window + 1e-9]
     excursion = math.degrees(max(0.0, within.max() if side == "adverse" else -within.min()))
     ratios = [response.bank_at(time) / angle for time in times[:2]]
@@ -179,6 +187,27 @@ def _sideslip(response: RollResponse, side: str, wanted: tuple[float, Sequence[f
         margin=None if value is None else highs[0] - value,
         note=f"within {window:.3g} s of the step, rudder fixed; k = {ratios[0]:.3g} at level 1"
         + ("" if ratios[0] > 0 else ": the vehicle rolls against the aileron"),
+    )
+
+
+def _small_sideslip(
+    response: RollResponse, found: RollOscillation | None, wanted: tuple[float, Sequence[float]], context: Context
+) -> Verdict:
+    """The value of figure 6 without a verdict; in the linear model it does not depend on the size of the step."""
+    angle, times = wanted
+    k = response.bank_at(times[0]) / angle
+    within = response.sideslip[response.time <= response.window() + 1e-9]
+    notes = ["not judged: figure 6 is in no public copy that could be read"]
+    if found is not None and found.rate_phase is not None:
+        notes.append(f"ψ_beta {math.degrees(found.rate_phase):.0f} deg")
+    return context.verdict(
+        "sideslip_excursion_small",
+        AIRFRAME,
+        SMALL_SIDESLIP,
+        value=math.degrees(np.ptp(within)) / k if k > 0 else None,
+        unit="deg",
+        applicable=False,
+        note="; ".join(notes),
     )
 
 
