@@ -120,14 +120,17 @@ def scaling() -> str:
 def stopping(name: str = "stopping.json") -> str:
     """The stopping rule against long runs."""
     stored = json.loads((DATA / name).read_text(encoding="utf-8"))
-    head = ("Mach", "alpha, deg", "verdict", "iterations", "decades", "long run: best decades", "force differs by")
+    head = ("Mach", "alpha, deg", "beta, deg", "verdict", "iterations", "decades")
+    head += ("long run: iterations", "best decades", "force differs by")
     rows = [
         (
-            f"{r['mach']:g}",
+            f"{r['mach']:.3g}",
             f"{r['alpha_deg']:.0f}",
+            f"{r['beta_deg']:.0f}",
             r["verdict"],
             r["iterations"],
             f"{r['decades']:.1f}",
+            r["long_iterations"],
             f"{r['long_decades']:.1f}",
             f"{r['force_percent']:.3f} %",
         )
@@ -143,4 +146,5 @@ BLOCKS: dict[str, Callable[[], str]] = {
     "bench scaling": scaling,
     "stopping rule": stopping,
     "stopping rule in double precision": lambda: stopping("stopping_double.json"),
+    "five decades": lambda: stopping("five_decades.json"),
 }

@@ -70,6 +70,13 @@ def test_version(capfd):
     assert run(capfd, "--version")[:2] == (0, f"spaceplane {__version__}\n")
 
 
+def test_the_package_runs_as_a_module():
+    done = subprocess.run(
+        [sys.executable, "-m", "spaceplane", "--version"], capture_output=True, text=True, check=False
+    )
+    assert (done.returncode, done.stdout) == (0, f"spaceplane {__version__}\n")
+
+
 def test_help_starts_quickly_and_loads_nothing_heavy():
     code = (
         "import sys; from spaceplane import cli; cli.run(['--help']); "

@@ -130,10 +130,11 @@ class Steering:
         return np.maximum(self.cfl * factor, min(0.5, self.caution.cfl_start))
 
 
-def stands(history: History, settings: FlowSettings) -> bool:
-    """Whether the force stands within the tolerance over the window, within twice that over two windows."""
-    window, tolerance = settings.window, settings.force_tolerance
-    return history.spread(window) < tolerance and history.spread(2 * window) < 2.0 * tolerance
+def drifted(history: History, settings: FlowSettings) -> float:
+    """Spread of the force over the later half of a run, two windows at least and `PATIENCE` at most: a slow wake drifts
+    by little in a few windows."""
+    window = settings.window
+    return history.spread(max(2 * window, min(PATIENCE * window, len(history.residual) // 2)))
 
 
 def creeps(history: History, settings: FlowSettings) -> bool:
@@ -150,23 +151,20 @@ def creeps(history: History, settings: FlowSettings) -> bool:
 def converged(history: History, settings: FlowSettings, patience: int = LEAST_PATIENCE) -> bool:
     """Whether a condition is good on the fine mesh: residual and force window together.
 
-    Either the residual fell by `residual_drop` with forces within the tolerance, twice that over two windows; or, where
-    it gained nothing more in `patience` windows, by half a decade more than `least_drop` with forces standing over two
-    windows, or by `least_drop` with forces standing over three. Then they must not have crept by more than twice as
-    much over the whole `PATIENCE` either (or the later half of a shorter run): a slow wake drifts by little in a few
-    windows.
+    Either the residual fell by `residual_drop` with forces within the tolerance; or, where it gained nothing more in
+    `patience` windows, by half a decade more than `least_drop` with forces standing over two windows, or by
+    `least_drop` with forces standing over three. And they must not have drifted by more than twice the tolerance.
     """
     window, tolerance, drop = settings.window, settings.force_tolerance, history.drop()
     length = len(history.residual)
-    if length <= window:
+    if length <= window or drifted(history, settings) > 2.0 * tolerance:
         return False
     if drop >= settings.residual_drop:
-        return stands(history, settings)
+        return history.spread(window) < tolerance
     windows = 2 if drop >= settings.least_drop + 0.5 else 3
     if drop < settings.least_drop or length <= windows * window or history.gain(patience * window) > WORTH_WAITING:
         return False
-    crept = history.spread(min(PATIENCE * window, length // 2))
-    return history.spread(windows * window) < tolerance and crept < 2.0 * tolerance
+    return history.spread(windows * window) < tolerance
 
 
 def stalled(history: History, settings: FlowSettings) -> bool:
