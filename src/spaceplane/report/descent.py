@@ -100,7 +100,7 @@ def pictures(descent: Descent) -> dict[str, bytes]:
     drawn = {"trim-map": data.getvalue()}
     if descent.branches is not None:
         drawn["root-locus"] = root_locus(descent.branches)
-        drawn["modes-by-mach"] = over_parameter(descent.branches)
+        drawn["modes-by-mach"] = over_parameter(descent.branches, "Mach number")
     flown = [one for one in descent.points if one.modes]
     if flown:
         drawn["eigenvectors"] = phasors(flown[0].modes, flown[0].point.velocity)
@@ -236,7 +236,7 @@ def _eigenvalue(mode: Mode) -> str:
 
 
 def _pace(mode: Mode) -> str:
-    parts = [f"½ {mode.half_time:.3g} s"] if mode.half_time else []
-    parts += [f"2 {mode.double_time:.3g} s"] if mode.double_time else []
+    parts = [f"halves in {mode.half_time:.3g} s"] if mode.half_time else []
+    parts += [f"doubles in {mode.double_time:.3g} s"] if mode.double_time else []
     parts += [f"ζ {mode.damping_ratio:.3f}"] if mode.damping_ratio is not None else []
     return ", ".join(parts) or "-"

@@ -173,8 +173,8 @@ def _mode_table(point: dict, one: str, two: str) -> Table:
         rows.append((" → ".join(names), *sides, similarity))
     columns = ("mode", f"{one}, 1/s", "pace", f"{two}, 1/s", "pace", "similarity")
     note = (
-        "Paired by motion and eigenvalue. Pace: time to half (½) or double (2) the amplitude and, of an oscillation, "
-        "its damping ratio. Similarity: modal assurance criterion of the eigenvectors."
+        "Paired by motion and eigenvalue. Pace: the time in which the amplitude halves or doubles and, of an "
+        "oscillation, its damping ratio. Similarity: modal assurance criterion of the eigenvectors."
     )
     return Table(f"Mach {point['mach']:g}: modes", 3, note, columns, tuple(rows))
 
@@ -256,7 +256,7 @@ def _pace(mode: dict | None) -> str:
     if mode is None:
         return "-"
     half, double, ratio = mode["half_time_s"], mode["double_time_s"], mode["damping_ratio"]
-    parts = [f"½ {half:.3g} s"] if half else [f"2 {double:.3g} s"] if double else []
+    parts = [f"halves in {half:.3g} s"] if half else [f"doubles in {double:.3g} s"] if double else []
     parts += [f"ζ {ratio:.3f}"] if ratio is not None else []
     return ", ".join(parts) or "-"
 
