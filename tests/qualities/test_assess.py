@@ -161,6 +161,30 @@ def test_coupled_roll_spiral(product, level):
     assert of(verdicts, "3.3.1.4").level == level
 
 
+def test_a_divergence_in_yaw_and_roll_meets_no_level():
+    """Negative directional stability: no Dutch roll is left to judge, and the bank angle doubles in a second."""
+    unstable = B747_LATERAL.copy()
+    unstable[1, 0], unstable[2, 0] = -0.8, 0.5
+    modes = identify(from_matrix(unstable, ("beta", "r", "p", "phi")))
+    fastest = max(modes, key=lambda mode: mode.eigenvalue.real)
+    assert fastest.double_time < 1.0 and not fastest.oscillatory and fastest.kind != "spiral"
+    judged = [v for v in assess(modes) if v.paragraph == "3.3.1.3" and v.mode == fastest.name]
+    assert [v.level for v in judged] == [BELOW] and judged[0].value == pytest.approx(fastest.double_time)
+    slow = identify(from_matrix(np.diag([math.log(2) / 21.0, -1.0]), ("r", "p")))
+    assert of(assess(slow), "3.3.1.3").level == 1
+
+
+@pytest.mark.parametrize(("double", "level"), [(1.0, BELOW), (60.0, 3)])
+def test_a_growing_oscillation_of_pitch_with_roll_is_held_to_the_phugoid(double, level):
+    growth, omega = math.log(2) / double, 0.5
+    matrix = np.array([[growth, omega], [-omega, growth]])
+    modes = identify(from_matrix(matrix, ("theta", "phi")))
+    assert modes[0].kind == "coupled_oscillation"
+    assert of(assess(modes), "3.2.1.2").level == level
+    calm = identify(from_matrix(matrix - 2 * growth * np.eye(2), ("theta", "phi")))
+    assert not of(assess(calm), "3.2.1.2").applicable
+
+
 def test_aperiodic_is_not_applicable_and_says_what_is():
     modes = identify(linearise(horus.point(), horus.MASS, horus.REFERENCE, horus.derivatives()))
     verdicts = assess(modes, n_alpha=5.0)

@@ -105,6 +105,8 @@ def test_words_for_limits_and_saturation():
         verdict("b", "spiral", "x", "3.3.1.3", 1.0, "below 3", {}),
     ]
     assert worst_text(levels) == "below 3 (spiral)" and worst_text([]) == "–"
+    both = [*levels, verdict("c", "phugoid", "x", "3.2.1.2", 1.0, "below 3", {})]
+    assert worst_text(both) == "below 3 (spiral, phugoid)"
 
 
 def test_drawings_show_both_loops():

@@ -10,12 +10,17 @@ from spaceplane.qualities.verdict import BELOW, Context, Level, Verdict, absent,
 
 
 def phugoid(modes: Sequence[Mode], context: Context) -> list[Verdict]:
-    """Damping ratio of the phugoid, at level 3 its time to double."""
+    """Damping ratio of the phugoid, at level 3 its time to double; so of other oscillations of airspeed that grow.
+
+    An oscillation of pitch with speed, or of pitch with roll, is no phugoid. Where it grows it is held to the limits of
+    one, the mildest of all on an oscillation, for no other paragraph holds it.
+    """
     entry = limits.specification()["phugoid"]
     zeta1, zeta2 = entry["damping_ratio_low"]
     slowest = entry["double_time_low_s"]
     text = {"1": f">= {zeta1:.4g}", "2": f">= {zeta2:.4g}", "3": f"time to double >= {slowest:.4g} s"}
     found = of_kind(modes, "phugoid", "path_oscillation")
+    found += [m for m in of_kind(modes, "third_oscillation", "coupled_oscillation") if m.double_time is not None]
     if not found:
         others = of_kind(
             modes, "path_aperiodic", "height", "pitch_speed_aperiodic", "third_oscillation", "coupled_aperiodic"

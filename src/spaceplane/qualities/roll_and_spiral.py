@@ -37,9 +37,14 @@ def roll(modes: Sequence[Mode], context: Context) -> list[Verdict]:
 
 
 def spiral(modes: Sequence[Mode], context: Context) -> list[Verdict]:
-    """Time to double of the spiral."""
+    """Time to double of the spiral, and of whatever else takes the bank angle with it without oscillation.
+
+    The paragraph limits how fast a bank angle may double, whatever the motion is called: an airframe that diverges in
+    yaw and roll would otherwise meet every lateral criterion that still applies to it.
+    """
     lows: Sequence[float] = context.entry("spiral")  # type: ignore[assignment]
-    found = of_kind(modes, "spiral")
+    kinds = ("roll_aperiodic", "roll_yaw_aperiodic", "yaw_aperiodic", "coupled_aperiodic")
+    found = of_kind(modes, "spiral") + [mode for mode in of_kind(modes, *kinds) if mode.double_time is not None]
     if not found:
         others = of_kind(modes, "roll_yaw_aperiodic", "yaw_aperiodic", "roll_spiral_oscillation", "coupled_aperiodic")
         return [absent(context, "spiral", "spiral", "time to double", others, oscillation=False)]
@@ -56,7 +61,7 @@ def spiral(modes: Sequence[Mode], context: Context) -> list[Verdict]:
                 limits=least_text(lows),
                 level=1 if time is None else level_of_least(time, lows),
                 margin=None if time is None else time - lows[0],
-                note=f"stable: halves in {mode.half_time:.4g} s" if mode.half_time is not None else "",
+                note="" if mode.half_time is None else f"stable: halves in {mode.half_time:.4g} s",
             )
         )
     return verdicts

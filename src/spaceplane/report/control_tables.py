@@ -101,11 +101,12 @@ def within_text(record: dict) -> str:
 
 
 def worst_text(verdicts: Sequence[dict]) -> str:
-    """The worst level on a mode and its criterion; a dash where none applies."""
+    """The worst level on a mode and the criteria that have it; a dash where none applies."""
     order = {1: 1, 2: 2, 3: 3, "below 3": 4}
-    found = [(order.get(level_of(v), 0), name, level_of(v)) for name, v in worst_levels(list(verdicts)).items()]
-    rank, name, level = max(found, default=(0, "", None))
-    return f"{level_text(level)} ({name})" if rank else "–"
+    found = {name: level_of(v) for name, v in worst_levels(list(verdicts)).items()}
+    worst = max(found.values(), key=lambda level: order.get(level, 0), default=None)
+    names = [name for name, level in found.items() if level == worst]
+    return f"{level_text(worst)} ({', '.join(names)})" if worst in order else "–"
 
 
 def level_chip(verdict: dict | None) -> dict[str, str]:
