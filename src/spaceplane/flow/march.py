@@ -151,16 +151,19 @@ def creeps(history: History, settings: FlowSettings) -> bool:
 def converged(history: History, settings: FlowSettings, patience: int = LEAST_PATIENCE) -> bool:
     """Whether a condition is good on the fine mesh: residual and force window together.
 
-    Either the residual fell by `residual_drop` with forces within the tolerance; or, where it gained nothing more in
-    `patience` windows, by half a decade more than `least_drop` with forces standing over two windows, or by
-    `least_drop` with forces standing over three. And they must not have drifted by more than twice the tolerance.
+    Either the residual fell by `residual_drop` with forces within the tolerance, and drifted by no more than twice
+    that; or, where it gained nothing more in `patience` windows, by half a decade more than `least_drop` with forces
+    standing over two windows, or by `least_drop` with forces standing over three, and drifted by no more than the
+    tolerance: what still drifts at a higher residual has farther to go.
     """
     window, tolerance, drop = settings.window, settings.force_tolerance, history.drop()
-    length = len(history.residual)
-    if length <= window or drifted(history, settings) > 2.0 * tolerance:
+    length, drift = len(history.residual), drifted(history, settings)
+    if length <= window or drift > 2.0 * tolerance:
         return False
     if drop >= settings.residual_drop:
         return history.spread(window) < tolerance
+    if drift > tolerance:
+        return False
     windows = 2 if drop >= settings.least_drop + 0.5 else 3
     if drop < settings.least_drop or length <= windows * window or history.gain(patience * window) > WORTH_WAITING:
         return False
