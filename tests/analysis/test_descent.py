@@ -112,6 +112,20 @@ def test_branches_pass_from_one_to_the_other_by_events(descent):
     assert descent.branches.dataset["mach"].values[[0, -1]].tolist() == [1.5, 10.0]
 
 
+def test_modes_between_flight_points_are_those_of_flight_points_there(descent):
+    """A is not taken linear from Mach 5 to 10, which would be far off in the middle."""
+    data = descent.branches.dataset
+    mach = data["mach"].values
+    assert np.diff(np.log(mach)).max() < 0.021
+    k = int(np.argmin(np.abs(mach - 7.5)))
+    settings = DescentSettings((5.0, mach[k], 10.0), body_flap=HORUS_2B_BODY_FLAP, feedback=None)
+    there = descend(horus_2b_published(), MASS, settings).points[1].modes
+    for mode in there:
+        assert np.abs(descent.branches.eigenvalues()[k] - mode.eigenvalue).min() < 1e-9
+    straight = np.linalg.eigvals(sum(one.system.A for one in descent.points[3:5]) / 2)
+    assert max(np.abs(straight - mode.eigenvalue).min() for mode in there) > 0.1
+
+
 def test_nothing_is_extrapolated():
     found = descend(horus_2b_published(), MASS, DescentSettings((1.2, 2.0)))
     outside, inside = found.points

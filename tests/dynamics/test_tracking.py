@@ -100,6 +100,20 @@ def test_bubble_of_an_oscillation_merges_and_splits():
     assert (partner[inside, first] == second).all() and (partner[~inside, first] == first).all()
 
 
+def test_events_have_the_names_just_beside_them():
+    """One wide step: the oscillation turns unstable at 0.2 and splits at 0.6, and is no divergence in between."""
+
+    def system(t):
+        return from_matrix(np.array([[t - 0.2, 1.0], [4 * (t - 0.6), t - 0.2]]), ("alpha", "q"))
+
+    found = {e.kind: e for e in follow(system, (0.0, 1.0), "t").events if e.kind in ("stability", "split")}
+    assert found["stability"].parameter == pytest.approx(0.2) and found["split"].parameter == pytest.approx(0.6)
+    assert found["stability"].before == found["stability"].after == ("short period",)
+    assert (
+        found["split"].before == ("short period",) * 2 and found["split"].after == ("aperiodic pitch divergence",) * 2
+    )
+
+
 def test_stability_is_found_where_it_changes():
     branches = follow(
         lambda t: mixed(np.array([[t, 2.0, 0.0], [-2.0, t, 0.0], [0.0, 0.0, t - 0.3]])), np.linspace(-1, 1, 4), "t"

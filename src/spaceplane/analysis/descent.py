@@ -18,7 +18,7 @@ from spaceplane.analysis.tracked import Tracked, track
 from spaceplane.dynamics.flightpoint import FlightPoint, taem_point
 from spaceplane.dynamics.given_errors import GivenError
 from spaceplane.dynamics.glide import glide_bank, glide_path_angle, tabulated_slope
-from spaceplane.dynamics.linearise import FORMS
+from spaceplane.dynamics.linearise import FORMS, linearise
 from spaceplane.dynamics.modes import Mode
 from spaceplane.dynamics.statespace import StateSpace
 from spaceplane.dynamics.tracking import Branches
@@ -108,19 +108,25 @@ class DescentSettings:
         Raises:
             InputError: a Mach number outside the descent of the thesis, or an angle out of range.
         """
-        unknown = {"gamma_deg": 0.0, "bank_deg": 0.0}
-        known = {name: getattr(self, name) for name in GIVEN if getattr(self, name) is not None}
-        return [
-            taem_point(mach, **unknown | {name: values[k] for name, values in known.items()})
-            for k, mach in enumerate(self.machs)
-        ]
+        return [self.flight_point(mach) for mach in self.machs]
 
-    def slopes(self) -> list[float]:
-        """Slope dh/dV, m per m/s, of the altitudes at each Mach number."""
+    def flight_point(self, mach: float) -> FlightPoint:
+        """That at one Mach number, what is given linear between the Mach numbers."""
+        known = {"gamma_deg": 0.0, "bank_deg": 0.0}
+        for name in GIVEN:
+            if (values := getattr(self, name)) is not None:
+                known[name] = float(np.interp(mach, self.machs, values))
+        return taem_point(mach, **known)
+
+    def slope(self, mach: float) -> float | None:
+        """Slope dh/dV, m per m/s, of the altitudes at a Mach number; None where path angles are given instead."""
+        if self.gamma_deg is not None:
+            return None
         if self.altitude_m is None:
-            return [tabulated_slope(mach) for mach in self.machs]
+            return tabulated_slope(mach)
         points = self.flight_points()
-        return np.gradient([p.altitude for p in points], [p.velocity for p in points]).tolist()
+        slopes = np.gradient([p.altitude for p in points], [p.velocity for p in points])
+        return float(np.interp(mach, self.machs, slopes))
 
 
 @dataclass(frozen=True)
@@ -193,29 +199,37 @@ def descend(
     _check_errors(settings.uncertainty, model)
     say = progress or silent
     points = settings.flight_points()
-    slopes = settings.slopes() if settings.gamma_deg is None else [None] * len(points)
     say("trim map", 0, 1, "")
     within = [m for m in settings.machs if model.mach[0] <= m <= model.mach[-1]]
     machs = np.unique(np.concatenate([model.mach, within]))
     alphas = np.arange(model.alpha[0], model.alpha[-1] + 0.5 * MAP_STEP, MAP_STEP)
     found = trim_map(model, machs.tolist(), alphas.clip(max=model.alpha[-1]).tolist(), settings.body_flap)
     flown = []
-    for number, (point, slope) in enumerate(zip(points, slopes, strict=True)):
+    for number, point in enumerate(points):
         say("flight dynamics", number, len(points), point.name)
-        flown.append(_at(model, mass, point, slope, settings))
-    return Descent(model, mass, settings, found, tuple(flown), track(points, [one.system for one in flown]))
+        flown.append(_at(model, mass, point.mach, settings))
+    say("modes between the flight points", 0, 1, "")
+
+    def system_at(mach: float) -> StateSpace | None:
+        airframe = _trimmed(model, mass, mach, settings)[2]
+        if airframe is None:
+            return None
+        return linearise(airframe.point, mass, model.reference, airframe.derivatives, settings.form)
+
+    tracked = track(points, [one.system for one in flown], system_at)
+    return Descent(model, mass, settings, found, tuple(flown), tracked)
 
 
-def _at(
-    model: AeroModel, mass: MassProperties, point: FlightPoint, slope: float | None, settings: DescentSettings
-) -> DescentPoint:
-    """Trim, linear model, modes and verdicts at one flight point; `slope`: dh/dV, from which the path angle follows."""
-    flap = settings.body_flap
-    flap = schedule_at(flap, point.mach) if isinstance(flap, Mapping) else flap
-    trims = trim_elevator(model, point.mach, point.alpha, flap)
+def _trimmed(
+    model: AeroModel, mass: MassProperties, mach: float, settings: DescentSettings
+) -> tuple[DescentPoint, dict[str, float], Airframe | None]:
+    """Flight point and trim at one Mach number, the deflections, rad, and the airframe; None where there is none."""
+    point, slope, flap = settings.flight_point(mach), settings.slope(mach), settings.body_flap
+    flap = schedule_at(flap, mach) if isinstance(flap, Mapping) else flap
+    trims = trim_elevator(model, mach, point.alpha, flap)
     trim = trims.best
     if trim is None:
-        return DescentPoint(point, reason=trims.reason)
+        return DescentPoint(point, reason=trims.reason), {}, None
     deflections = {"elevon_left": trim.elevator, "elevon_right": trim.elevator}
     if "body_flap" in model.surfaces:
         deflections["body_flap"] = trim.body_flap
@@ -227,17 +241,24 @@ def _at(
     try:
         derivatives = model.derivatives(point.mach, point.alpha, deflections)
     except OutsideTables as error:
-        return DescentPoint(point, trim, reason=f"outside the tables: {error}")
+        return DescentPoint(point, trim, reason=str(error)), deflections, None
     airframe = Airframe(point, mass, model.reference, derivatives, 0.0, trim.elevator)
+    return DescentPoint(point, trim), deflections, airframe
+
+
+def _at(model: AeroModel, mass: MassProperties, mach: float, settings: DescentSettings) -> DescentPoint:
+    """Trim, linear model, modes and verdicts at one Mach number."""
+    found, deflections, airframe = _trimmed(model, mass, mach, settings)
+    if airframe is None:
+        return found
     judged = (settings.vehicle_class, settings.category)
     assessed = assess_all(airframe, *judged, settings.form)
     asked = settings.feedback
-    return DescentPoint(
-        point,
-        trim,
-        assessed.system,
-        assessed.modes,
-        assessed.verdicts,
+    return replace(
+        found,
+        system=assessed.system,
+        modes=assessed.modes,
+        verdicts=assessed.verdicts,
         likelihood=likelihood(
             airframe, assessed, settings.uncertainty, *judged, settings.form, settings.samples, settings.correlation
         ),

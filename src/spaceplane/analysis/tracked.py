@@ -1,14 +1,18 @@
 """Modes followed along the Mach number through flight points that lie near enough to each other to be joined.
 
-Only the linear models at the flight points are known; between them A is taken linear in the Mach number. That means
-something only where neighbours are alike. How far they may differ is a choice of this project, told with every refusal.
+Between flight points models are made too where their maker is given, `STEP` apart; otherwise only those at the points
+are known. Between known ones A is taken linear in the Mach number. That means something only where neighbours are
+alike. How far they may differ is a choice of this project, told with every refusal.
 """
 
 from __future__ import annotations
 
+import itertools
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
 
 from spaceplane.dynamics.flightpoint import FlightPoint
 from spaceplane.dynamics.statespace import StateSpace, from_matrix
@@ -18,6 +22,8 @@ GREATEST_MACH_RATIO = 2.0
 GREATEST_PRESSURE_RATIO = 3.0
 GREATEST_ANGLE = math.radians(30.0)
 """Between neighbours, in angle of attack, path and bank angle, rad."""
+STEP = 0.02
+"""Greatest step between models of which A is interpolated, a share of the Mach number."""
 
 
 @dataclass(frozen=True)
@@ -35,12 +41,18 @@ class Tracked:
     reasons: tuple[str, ...]
 
 
-def track(points: Sequence[FlightPoint], systems: Sequence[StateSpace | None]) -> Tracked:
+def track(
+    points: Sequence[FlightPoint],
+    systems: Sequence[StateSpace | None],
+    system_at: Callable[[float], StateSpace | None] | None = None,
+) -> Tracked:
     """Follow the modes along the Mach number.
 
     Args:
         points: flight points in any order.
         systems: the linear model at each; None where there is none.
+        system_at: the linear model at a Mach number between them, None where there is none; without it A is linear
+            between the flight points.
     """
     order = sorted(range(len(points)), key=lambda k: points[k].mach)
     runs: list[list[int]] = [[]]
@@ -60,8 +72,30 @@ def track(points: Sequence[FlightPoint], systems: Sequence[StateSpace | None]) -
         return Tracked(None, (), tuple(reasons or ["a single flight point"]))
     grid = [points[k].mach for k in longest]
     # eigenvalues need no inputs, and these may differ where a control derivative is missing
-    models = [from_matrix(systems[k].A, systems[k].states) for k in longest]  # type: ignore[union-attr]
-    return Tracked(follow(interpolated(grid, models), grid, "mach"), tuple(longest), tuple(reasons))
+    models = {points[k].mach: _bare(systems[k]) for k in longest}
+    for mach in _between(grid) if system_at else ():
+        found = system_at(mach)  # type: ignore[misc]
+        if found is not None and found.states == systems[longest[0]].states:  # type: ignore[union-attr]
+            models[mach] = _bare(found)
+    fine = sorted(models)
+    branches = follow(interpolated(fine, [models[mach] for mach in fine]), fine, "mach")
+    given = np.isin(branches.dataset["mach"].values, grid)
+    return Tracked(
+        replace(branches, dataset=branches.dataset.assign_coords(given=("mach", given))), tuple(longest), tuple(reasons)
+    )
+
+
+def _bare(system: StateSpace | None) -> StateSpace:
+    return from_matrix(system.A, system.states)  # type: ignore[union-attr]
+
+
+def _between(grid: Sequence[float]) -> list[float]:
+    """Mach numbers that part the steps of the grid into equal ratios of at most 1 + `STEP`."""
+    found: list[float] = []
+    for low, high in itertools.pairwise(grid):
+        count = math.ceil(math.log(high / low) / math.log1p(STEP) - 1e-9)
+        found += np.geomspace(low, high, count + 1)[1:-1].tolist()
+    return found
 
 
 def _gap(points: Sequence[FlightPoint], systems: Sequence[StateSpace | None], a: int, b: int) -> str:

@@ -320,8 +320,19 @@ class _Finder:
     def _event(
         self, kind: str, k: int, where: float, branches: tuple[int, ...], value: complex, end: int | None = None
     ) -> Event:
+        """An event in the step that begins at point `k`, or the steps from there to point `end`.
+
+        Names are those just beside the place, where that is inside the step: another event may change them farther on.
+        """
         ends = (k, k + 1 if end is None else end)
-        before, after = (tuple(self.names[j][i][0] for i in branches) for j in ends)
+        beside = [self.names[j] for j in ends]
+        if end is None and self.track[k].parameter < where < self.track[k + 1].parameter:
+            sides = (
+                max(where - self.fineness, self.track[k].parameter),
+                min(where + self.fineness, self.track[k + 1].parameter),
+            )
+            beside = [_names(self._between(k, value)) for value in sides]
+        before, after = (tuple(names[i][0] for i in branches) for names in beside)
         return Event(kind, where, tuple(self.labels[i] for i in branches), complex(value), before, after)
 
     def _branch_point(self, k: int, pair: tuple[int, int]) -> Event:

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from spaceplane import __version__
 from spaceplane.analysis.descent import Descent, DescentPoint, DescentSettings
+from spaceplane.analysis.tracked import STEP
 from spaceplane.dynamics.modes import Mode
 from spaceplane.files import json_text, renamed_when_done, told, write_text
 from spaceplane.plain import finite
@@ -199,7 +200,10 @@ def _events(descent: Descent) -> list[Table]:
         for e in descent.branches.events
         if e.kind != "name"
     ]
-    note = "Where eigenvalues meet, part or turn from decay to growth; between flight points A is linear."
+    note = (
+        "Where eigenvalues meet, part or turn from decay to growth. Between flight points the vehicle is trimmed "
+        f"anew at steps of {100 * STEP:g} % of the Mach number."
+    )
     note += f" Not followed farther: {gaps}." if gaps else ""
     return [Table(EVENTS, 3, note, ("Mach", "event", "branches", "before", "after"), tuple(rows))]
 
