@@ -1,6 +1,10 @@
 """Solve a Latin hypercube of free streams over random shapes with random deflections and report how each ended.
 
 Example: python scripts/check_flow.py --shapes 20 --conditions 300 --json flow.json
+
+Silently wrong is what counts as converged and is no finite number, is far from impact theory at a Mach number where
+that holds, or, with --deep, is not where the flow goes in double precision when asked for five decades; and what does
+not converge without a reason.
 """
 
 from __future__ import annotations
@@ -21,6 +25,7 @@ from scipy.stats import qmc
 
 from spaceplane.aero.inclination.solve import local_inclination
 from spaceplane.aero.integrate import COEFFICIENTS, integrate
+from spaceplane.flow.settings import FlowSettings
 from spaceplane.flow.solution import FlowConditions
 from spaceplane.flow.solve import solve
 from spaceplane.mesh.generate import generate
@@ -34,6 +39,10 @@ MACH, ALPHA_DEG, BETA_DEG = (0.3, 25.0), (-10.0, 45.0), (-10.0, 10.0)
 IMPACT_FROM, ALLOWED, SHARE = 3.0, 0.1, 0.3
 """From this Mach number on, CN and CA may differ from impact theory by ALLOWED + SHARE of its normal force."""
 
+DEEP = FlowSettings(precision="double", iterations=400).falling(5.0)
+DEEP_ALLOWED = 0.01
+"""Greatest distance of a converged force from that of the deep run, a share of it."""
+
 
 def hypercube(count: int, seed: int) -> np.ndarray:
     """[count, (Mach, alpha, beta)] Latin hypercube, uniform in log(Mach) and in the angles, rad."""
@@ -45,8 +54,8 @@ def hypercube(count: int, seed: int) -> np.ndarray:
     return rows
 
 
-def check(rows: np.ndarray, rng: np.random.Generator, cells: int) -> list[dict]:
-    """One record per free stream, on one random shape."""
+def check(rows: np.ndarray, rng: np.random.Generator, cells: int, deep: bool) -> list[dict]:
+    """One record per free stream, on one random shape; `deep`: solve again, with `DEEP`."""
     shape, deflections = sample(rng, corner=False)
     surface = build(ShapeParameters.create(shape), ControlDeflections.from_degrees(deflections))
     mesh = generate(surface, MeshSettings(target_cells=cells, wall_layers=1))
@@ -55,6 +64,7 @@ def check(rows: np.ndarray, rng: np.random.Generator, cells: int) -> list[dict]:
     began = time.perf_counter()
     solution = solve(mesh, conditions)
     seconds = time.perf_counter() - began
+    again = solve(mesh, conditions, DEEP).records if deep else [None] * len(rows)
     totals = integrate(solution, reference).sel(part="total")
     impact = local_inclination(surface, replace(conditions, mach=np.maximum(conditions.mach, IMPACT_FROM)), reference)
     impact = impact.sel(part="total")
@@ -66,6 +76,10 @@ def check(rows: np.ndarray, rng: np.random.Generator, cells: int) -> list[dict]:
         finite = all(math.isfinite(v) for v in values.values()) and bool(np.isfinite(solution.state[:, :, i]).all())
         gap = max(abs(values[name] - float(impact[name][i])) for name in ("CN", "CA"))
         plausible = mach < IMPACT_FROM or gap < ALLOWED + SHARE * abs(float(impact.CN[i]))
+        if (other := again[i]) is not None and other.good:
+            size = float(np.linalg.norm(other.window_mean))
+            away = float(np.linalg.norm(record.window_mean - other.window_mean)) / size
+            plausible &= away < DEEP_ALLOWED
         records.append(
             {
                 "mach": mach,
@@ -76,6 +90,8 @@ def check(rows: np.ndarray, rng: np.random.Generator, cells: int) -> list[dict]:
                 "iterations": record.iterations,
                 "reason": record.reason,
                 "from_impact_theory": gap,
+                **({} if other is None else {"deep_verdict": other.verdict, "deep_decades": other.residual_drop}),
+                **({"from_deep": away} if other is not None and other.good else {}),
                 "silently_wrong": not (finite and plausible) if record.good else not record.reason,
                 "cells": mesh.cells,
                 "ensemble_seconds": round(seconds, 1),
@@ -92,6 +108,7 @@ def main() -> int:
     parser.add_argument("--conditions", type=int, default=300, help="free streams, over all shapes")
     parser.add_argument("--cells", type=int, default=40_000, help="about how many cells each mesh has")
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--deep", action="store_true", help="solve again in double precision, to five decades")
     parser.add_argument("--json", type=Path, help="write every record here")
     options = parser.parse_args()
 
@@ -99,7 +116,7 @@ def main() -> int:
     rows = hypercube(options.conditions, options.seed)
     records = []
     for number, part in enumerate(track(np.array_split(rows, options.shapes), description="shapes")):
-        found = check(part, rng, options.cells)
+        found = check(part, rng, options.cells, options.deep)
         records += [{"shape": number, **record} for record in found]
         if not sys.stderr.isatty():
             print(f"shape {number + 1} of {options.shapes}: {dict(Counter(r['verdict'] for r in found))}", flush=True)
@@ -109,6 +126,13 @@ def main() -> int:
         **{name: verdicts.get(name, 0) for name in ("converged", "oscillating", "failed")},
         "silently_wrong": sum(record["silently_wrong"] for record in records),
     }
+    if options.deep:
+        away = [record["from_deep"] for record in records if record["verdict"] == "converged" and "from_deep" in record]
+        summary["beside_deep"] = {
+            "compared": len(away),
+            "deep_verdicts": dict(Counter(record["deep_verdict"] for record in records)),
+            **{f"percentile_{p}": float(np.percentile(away, p)) for p in (50, 90, 99, 100)},
+        }
     if options.json:
         options.json.write_text(json.dumps({"summary": summary, "records": records}, indent=1))
     print(json.dumps(summary, indent=1))
