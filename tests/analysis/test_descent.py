@@ -13,6 +13,7 @@ from scipy.stats import norm
 
 from spaceplane.aero.model.published import horus_2b_published
 from spaceplane.analysis.descent import DescentSettings, descend
+from spaceplane.analysis.trimming_center import trimming_center
 from spaceplane.dynamics.given_errors import read_errors
 from spaceplane.dynamics.linearise import linearise
 from spaceplane.dynamics.modes import identify
@@ -124,6 +125,16 @@ def test_modes_between_flight_points_are_those_of_flight_points_there(descent):
         assert np.abs(descent.branches.eigenvalues()[k] - mode.eigenvalue).min() < 1e-9
     straight = np.linalg.eigvals(sum(one.system.A for one in descent.points[3:5]) / 2)
     assert max(np.abs(straight - mode.eigenvalue).min() for mode in there) > 0.1
+
+
+def test_where_the_center_of_mass_would_have_to_be():
+    """Two metres aft the published tables have no trim at Mach 2.5; the search leads back to their own centre."""
+    model, settings = horus_2b_published(), DescentSettings((2.5, 5.0, 10.0))
+    x = model.reference.moment_center[0]
+    aft = model.moved((x + 2.0, 0.0, 0.0))
+    assert sum(one.trim is None for one in descend(aft, MASS, settings).points) >= 2
+    found = trimming_center(aft, settings)
+    assert found.count == 3 and found.lower - 0.3 < x < found.upper + 0.3
 
 
 def test_nothing_is_extrapolated():

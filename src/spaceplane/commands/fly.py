@@ -15,6 +15,7 @@ from spaceplane.errors import InputError
 from spaceplane.files import writable_folder
 
 if TYPE_CHECKING:
+    from spaceplane.analysis.descent import Descent
     from spaceplane.dynamics.flightpoint import FlightPoint
 
 EXAMPLE = "Example: spaceplane fly horus-2b-published --out out/fly"
@@ -167,9 +168,23 @@ def fly(
                 typer.echo(f"Mach {one.point.mach:g}: no trim: {one.reason}", err=True)
         print_descent(descent)
         descent_likelihood.print_levels(descent)
-        typer.echo(f"{len(trimmed)} of {len(descent.points)} flight points trimmed")
+        typer.echo(f"{len(trimmed)} of {len(descent.points)} flight points trimmed{_elsewhere(descent)}")
         typer.echo(f"report: {files['html']}")
     return 0 if trimmed else 1
+
+
+def _elsewhere(descent: Descent) -> str:
+    """Where the centre of mass would have to be, if half of the flight points have no trim about it."""
+    from spaceplane.analysis.trimming_center import trimming_center
+
+    trimmed = sum(one.trim is not None for one in descent.points)
+    if 2 * trimmed > len(descent.points):
+        return ""
+    found, x = trimming_center(descent.model, descent.settings), descent.model.reference.moment_center[0]
+    if found.count <= trimmed:
+        return f" about x = {x:.2f} m"
+    where = f"{found.lower:.2f} to {found.upper:.2f} m" if found.upper > found.lower else f"{found.lower:.2f} m"
+    return f" about x = {x:.2f} m; about {where} {found.count} would be (--center-of-mass)"
 
 
 def _each(name: str, text: str) -> tuple[float, ...]:

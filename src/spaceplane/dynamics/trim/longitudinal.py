@@ -22,6 +22,7 @@ from spaceplane.errors import InputError
 ELEVONS = ("elevon_left", "elevon_right")
 _PITCH = FORCES_AND_MOMENTS.index("Cm")
 _SAME = 1e-9  # rad, two trims that are one
+_SENSELESS = math.radians(90.0)  # no elevator that the ends' slopes lead to says anything beyond
 
 
 @dataclass(frozen=True)
@@ -253,9 +254,9 @@ def _why(
         return f"outside the tables: increments of {model.name} are empty at {at}", None
     low, high = (math.degrees(elevator.deflection[known][end]) for end in (0, -1))
     needed = beyond(elevator.deflection, values)
-    if needed is None:
+    if needed is None or abs(needed) > _SENSELESS:
         least, most = values[known].min(), values[known].max()
-        return f"Cm runs from {least:.4g} to {most:.4g} between elevator {low:g} and {high:g} deg", None
+        return f"Cm runs from {least:.4g} to {most:.4g} between elevator {low:g} and {high:g} deg", needed
     limit = low if math.degrees(needed) < low else high
     return f"needs elevator {math.degrees(needed):.4g} deg, limit {limit:g} deg", needed
 
