@@ -120,7 +120,7 @@ def scaling() -> str:
 def stopping(name: str = "stopping.json") -> str:
     """The stopping rule against long runs."""
     stored = json.loads((DATA / name).read_text(encoding="utf-8"))
-    head = ("Mach", "alpha, deg", "beta, deg", "verdict", "iterations", "decades")
+    head = ("Mach", "alpha, deg", "beta, deg", "verdict", "iterations", "decades", "spread of the force")
     head += ("long run: iterations", "best decades", "force differs by")
     rows = [
         (
@@ -130,6 +130,7 @@ def stopping(name: str = "stopping.json") -> str:
             r["verdict"],
             r["iterations"],
             f"{r['decades']:.1f}",
+            f"{r['spread_percent']:.3f} %",
             r["long_iterations"],
             f"{r['long_decades']:.1f}",
             f"{r['force_percent']:.3f} %",
