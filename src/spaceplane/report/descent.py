@@ -100,11 +100,12 @@ def pictures(descent: Descent) -> dict[str, bytes]:
     trim_map_figure(descent.trim_map).savefig(data, format="png", dpi=130, bbox_inches="tight")
     drawn = {"trim-map": data.getvalue()}
     if descent.branches is not None:
-        drawn["root-locus"] = root_locus(descent.branches)
+        drawn["root-locus"] = root_locus(descent.branches, label="Mach number")
         drawn["modes-by-mach"] = over_parameter(descent.branches, "Mach number")
     flown = [one for one in descent.points if one.modes]
     if flown:
-        drawn["eigenvectors"] = phasors(flown[0].modes, flown[0].point.velocity)
+        slowest = flown[0].point
+        drawn["eigenvectors"] = phasors(flown[0].modes, slowest.velocity, f"Eigenvectors at {slowest.name}")
     return drawn | descent_likelihood.pictures(descent) | descent_control.pictures(descent)
 
 
@@ -202,7 +203,8 @@ def _events(descent: Descent) -> list[Table]:
     ]
     note = (
         "Where eigenvalues meet, part or turn from decay to growth. Between flight points the vehicle is trimmed "
-        f"anew at steps of {100 * STEP:g} % of the Mach number."
+        f"anew at steps of {100 * STEP:g} % of the Mach number; modes jump where the angle of attack passes a node of the "
+        "tables, since slopes of linear tables do."
     )
     note += f" Not followed farther: {gaps}." if gaps else ""
     return [Table(EVENTS, 3, note, ("Mach", "event", "branches", "before", "after"), tuple(rows))]

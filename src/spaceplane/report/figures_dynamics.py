@@ -55,7 +55,7 @@ def over_parameter(branches: Branches, label: str = "", window: tuple[float, flo
     return png(lambda: _over_parameter(branches, label, window))
 
 
-def phasors(modes: Sequence[Mode], speed: float) -> bytes:
+def phasors(modes: Sequence[Mode], speed: float, title: str = "") -> bytes:
     """Eigenvectors as arrows: who leads whom, and by how much.
 
     Components are made comparable: angles as they are, rates divided by the size of the eigenvalue (the angle swept in
@@ -65,10 +65,11 @@ def phasors(modes: Sequence[Mode], speed: float) -> bytes:
     Args:
         modes: those to show.
         speed: of flight, m/s.
+        title: above all of them.
     """
     if not modes:
         raise InputError("modes: none to show")
-    return png(lambda: _phasors(modes, speed))
+    return png(lambda: _phasors(modes, speed, title))
 
 
 def responses(
@@ -272,7 +273,7 @@ def _below_zero(axes: Axes, window: tuple[float, float] | None) -> tuple[float, 
     return low, min(max(0.0, low), high)
 
 
-def _phasors(modes: Sequence[Mode], speed: float) -> Figure:
+def _phasors(modes: Sequence[Mode], speed: float, title: str) -> Figure:
     import matplotlib.pyplot as plt
 
     columns = min(4, len(modes))
@@ -287,6 +288,8 @@ def _phasors(modes: Sequence[Mode], speed: float) -> Figure:
         value = mode.eigenvalue
         text = f"{value.real:.3g}" + (f" ± {value.imag:.3g}i" if value.imag else "")
         figure.axes[-1].set_title(f"{_wrapped(mode.name)}\n{text} 1/s", fontsize=8.5)
+    if title:
+        figure.suptitle(title, fontsize=10)
     return figure
 
 
