@@ -42,6 +42,7 @@ ORDER = (
     "validation",
     "commands",
     "cli",
+    "__main__",
 )
 
 

@@ -203,8 +203,8 @@ def _events(descent: Descent) -> list[Table]:
     ]
     note = (
         "Where eigenvalues meet, part or turn from decay to growth. Between flight points the vehicle is trimmed "
-        f"anew at steps of {100 * STEP:g} % of the Mach number; modes jump where the angle of attack passes a node of the "
-        "tables, since slopes of linear tables do."
+        f"anew at steps of {100 * STEP:g} % of the Mach number; modes jump where the angle of attack passes a node "
+        "of the tables, since slopes of linear tables do."
     )
     note += f" Not followed farther: {gaps}." if gaps else ""
     return [Table(EVENTS, 3, note, ("Mach", "event", "branches", "before", "after"), tuple(rows))]
