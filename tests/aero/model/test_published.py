@@ -160,3 +160,56 @@ def test_files_that_are_no_models(tmp_path):
     netcdf.to_dataset(linear.model()).drop_vars("CD").to_netcdf(tmp_path / "part.nc")
     with pytest.raises(InputError, match="CD"):
         netcdf.load(tmp_path / "part.nc")
+
+
+def in_degrees(name):
+    return lambda data: data.assign_coords({name: (name, np.degrees(data[name].values), {"units": "deg"})})
+
+
+def without_units(name):
+    def change(data):
+        del data[name].attrs["units"]
+        return data
+
+    return change
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (in_degrees("alpha"), "alpha: units are 'deg'; needed are 'rad'"),
+        (in_degrees("deflection_body_flap"), "deflection_body_flap: units are 'deg'; needed are 'rad'"),
+        (without_units("alpha"), "alpha: has no units; needed is 'rad'"),
+        (without_units("Cn_beta"), "Cn_beta: has no units; needed is '1/rad'"),
+        (lambda d: d.assign(Cl_beta=d.Cl_beta.assign_attrs(units="1/deg")), "Cl_beta: units are '1/deg'"),
+        (lambda d: d.assign(mach=d.mach.assign_attrs(units="days")), "mach: units are 'days'; needed are '1'"),
+        (lambda d: d.rename(Cn_beta="Cnbeta"), "unknown variable 'Cnbeta': did you mean 'Cn_beta'"),
+        (lambda d: d.rename(dCm_body_flap="dCm_bodyflap"), "did you mean 'dCm_body_flap'"),
+        (lambda d: d.rename(deflection_body_flap="deflection_bodyflap"), "did you mean 'deflection_body_flap'"),
+        (lambda d: d.assign(CD=d.CD.isel(alpha=0, drop=True)), "CD: its dimensions are mach; needed are alpha, mach"),
+        (lambda d: d.assign(CD=d.CD.astype(str)), "CD: holds .*; numbers are needed"),
+        (lambda d: d.drop_vars("alpha"), "alpha is missing"),
+        (lambda d: d.drop_vars("deflection_body_flap"), "deflection_body_flap is missing"),
+        (lambda d: d.drop_attrs(deep=False).assign_attrs(schema="spaceplane.aero_model", schema_version=1), "name is"),
+        (lambda d: d.assign_attrs(b_ref_m="thirteen"), "b_ref_m = 'thirteen': must be a finite number"),
+        (lambda d: d.assign_attrs(c_ref_m=math.nan), "c_ref_m = .*nan.*: must be a finite number"),
+        (lambda d: d.assign_attrs(reference_area_m2=-110.0), "reference_area_m2 = -110: must be above 0"),
+        (lambda d: d.assign_attrs(beta_limit_rad="ten"), "beta_limit_rad = 'ten'"),
+        (lambda d: d.assign_attrs(moment_center_m=[13.0, 0.0]), "moment_center_m = .*: must be three finite numbers"),
+        (lambda d: d.assign_attrs(moment_center_m="13 0 0"), "moment_center_m = '13 0 0': must be three"),
+    ],
+)
+def test_files_of_other_units_names_and_sizes_are_refused(change, message, tmp_path):
+    path = tmp_path / "model.nc"
+    change(netcdf.to_dataset(linear.model())).to_netcdf(path)
+    with pytest.raises(InputError, match=message) as caught:
+        netcdf.load(path)
+    assert str(caught.value).startswith(f"{path}: ") and "\n" not in str(caught.value)
+
+
+def test_what_has_no_dimension_needs_no_units(tmp_path):
+    data = netcdf.to_dataset(linear.model())
+    for name in ("mach", "CL", "Cl_p", "dCm_body_flap"):
+        del data[name].attrs["units"]
+    data.to_netcdf(tmp_path / "model.nc")
+    assert np.array_equal(netcdf.load(tmp_path / "model.nc").base["CL"], linear.model().base["CL"])
