@@ -575,7 +575,7 @@ def test_sources_that_are_none(capfd, tmp_path, command):
         ("CD0", HEAD + "0,much,1\n20,1,1\n", "CD0.csv, row 2: M2 = 'much'"),
         ("Cm0", HEAD + "0,1\n20,1,1\n", "Cm0.csv, row 2"),
         ("Cm0", "alpha,M2\n0,1\n", "Cm0.csv: columns"),
-        ("CL0", "alpha_deg,M3,M2\n0,1,1\n20,1,1\n", "mach"),
+        ("CL0", "alpha_deg,M3,M2\n0,1,1\n20,1,1\n", "CL0.csv, row 1: M2 follows M3"),
         ("dCm_one_elevn", HEAD, "dCm_one_elevon"),
     ],
 )

@@ -12,7 +12,7 @@ from spaceplane.aero.model import netcdf
 from spaceplane.aero.model.derivatives import per_degree
 from spaceplane.aero.model.model import OutsideTables
 from spaceplane.aero.model.published import FOLDER, horus_2b_published
-from spaceplane.aero.model.table_set import read_table_set
+from spaceplane.aero.model.table_set import read_table, read_table_set
 from spaceplane.errors import InputError
 
 # Thesis Table 6.1, per degree and per unit Mach, Mach 2.5, alpha 16.6 deg.
@@ -105,11 +105,20 @@ def test_empty_cells_are_unknown(folder):
         ("CL0.csv", "0.16", "O.16", r"CL0.csv, row 3: M1.5 = 'O.16': must be a number"),
         ("CL0.csv", "M1.5", "Mach", "M.*must be a number"),
         ("CD0.csv", "45,1.32", "46,1.32", "alpha_deg differ"),
-        ("dCm_bodyflap.csv", "-10,5,", "-10,0,", "one row for each"),
+        ("dCm_bodyflap.csv", "-10,5,", "-10,0,", "row 13: delta_deg -10, alpha_deg 0 stands in row 12 already"),
+        ("dCm_bodyflap.csv", "-10,5,", "-10,6,", "dCm_bodyflap.csv: no row for delta_deg -20, alpha_deg 6"),
+        ("CD0.csv", "\n5,", "\n0,", "CD0.csv, row 3: alpha_deg 0 stands in row 2 already"),
+        ("CD0.csv", "M2,M3", "M3,M2", "CD0.csv, row 1: M2 follows M3; Mach numbers must increase"),
+        ("CD0.csv", "M2,M3", "M2,M2.0", "CD0.csv, row 1: M2.0 follows M2"),
+        ("CL0.csv", "M1.5", "M-1.5", "CL0.csv, row 1: M-1.5: Mach numbers must not be negative"),
+        ("CD0.csv", "M2,M3", "2,M3", "CD0.csv, row 1: column '2': must be M and a Mach number"),
+        ("CD0.csv", "5,0.1,0.09", "5,0.1,-0.09", "CD0.csv, row of alpha_deg 5, column M2: CD = -0.09: must be above 0"),
+        ("CD0.csv", "5,0.1,0.09", "5,0.1,0", "column M2: CD = 0: must be above 0"),
+        ("slopes.csv", "CY_beta_per_deg,", "CY_beta_per_degree,", "did you mean 'CY_beta_per_deg'"),
         ("dCm_bodyflap.csv", "-10,0,0.0056", "-10,0,1,0.0056", "has 8 cells, needed are 7"),
         ("dCL_bodyflap.csv", "\n20,", "\n21,", "deflections differ"),
-        ("slopes.csv", "Cn_beta", "Cn_betta", "did you mean 'Cn_beta'"),
-        ("dCm_bodyflap.csv", "0,5,0,0,0,0,0", "0,5,0,0.1,0,0,0", "must be 0 at deflection 0"),
+        ("slopes.csv", "Cn_beta", "Cn_betta", "did you mean 'Cn_beta_per_deg'"),
+        ("dCm_bodyflap.csv", "0,5,0,0,0,0,0", "0,5,0,0.1,0,0,0", "dCm_bodyflap.csv, row 23: M2 = 0.1: must be 0"),
     ],
 )
 def test_damaged_table_sets_are_refused(folder, name, old, new, message):
@@ -119,6 +128,17 @@ def test_damaged_table_sets_are_refused(folder, name, old, new, message):
     with pytest.raises(InputError, match=message) as caught:
         read_table_set(folder, linear.REFERENCE)
     assert "\n" not in str(caught.value)
+
+
+def test_a_table_needs_two_angles_two_mach_numbers_and_no_deflection(folder):
+    for name, text, message in (
+        ("CL0.csv", "alpha_deg,M2\n0,0.1\n5,0.2\n", "CL0.csv, row 1: M2 is the only Mach number; at least two"),
+        ("CL0.csv", "alpha_deg,M2,M3\n5,0.1,0.1\n", "CL0.csv: alpha_deg 5 is the only one; at least two"),
+        ("dCm_bodyflap.csv", "delta_deg,alpha_deg,M2,M3\n5,0,0,0\n5,5,0,0\n", "bodyflap.csv: no row of delta_deg 0"),
+    ):
+        with pytest.raises(InputError, match=message):
+            (folder / name).write_text(text)
+            read_table(folder / name)
 
 
 def test_missing_and_misspelt_files(folder, tmp_path):

@@ -334,7 +334,8 @@ def _slope(function: Callable[[complex, str], dict], value: float, axis: np.ndar
 def _axis(name: str, values: object) -> np.ndarray:
     axis = np.array(values, dtype=float)
     if axis.ndim != 1 or len(axis) < 2 or not np.all(np.isfinite(axis)) or not np.all(np.diff(axis) > 0):
-        raise InputError(f"{name}: needs at least two finite, increasing values")
+        found = ", ".join(f"{value:g}" for value in axis.ravel())
+        raise InputError(f"{name} = {found}: needs at least two finite, increasing values")
     axis.flags.writeable = False
     return axis
 
