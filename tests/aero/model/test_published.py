@@ -2,6 +2,7 @@
 
 import math
 import shutil
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -153,12 +154,17 @@ def test_missing_and_misspelt_files(folder, tmp_path):
         read_table_set(folder, linear.REFERENCE)
 
 
-@pytest.mark.parametrize("make", [horus_2b_published, linear.model])
+def of_a_derivatives_file():
+    return replace(linear.model(), lag=(0.6, -0.7), center_known=False)
+
+
+@pytest.mark.parametrize("make", [horus_2b_published, linear.model, of_a_derivatives_file])
 def test_file_gives_the_model_back(make, tmp_path):
     model = make()
     netcdf.save(model, tmp_path / "model.nc")
     back = netcdf.load(tmp_path / "model.nc")
     assert (back.name, back.source, back.reference) == (model.name, model.source, model.reference)
+    assert (back.lag, back.center_known) == (model.lag, model.center_known)
     assert back.beta_limit == model.beta_limit and back.unknown() == model.unknown()
     for one, other in ((model.base, back.base), (model.slopes, back.slopes)):
         assert set(one) == set(other) and all(np.array_equal(one[n], other[n]) for n in one)

@@ -10,7 +10,7 @@ import numpy as np
 
 from spaceplane.aero.axes import FORCES_AND_MOMENTS
 from spaceplane.aero.integrate import DESCRIPTION
-from spaceplane.aero.model.model import BASE, SLOPES, AeroModel, SurfaceTable
+from spaceplane.aero.model.model import BASE, LAG, SLOPES, AeroModel, SurfaceTable
 from spaceplane.errors import InputError, unknown_name
 from spaceplane.vehicle.controls import CONTROL_POSITIVE, CONTROLS
 from spaceplane.vehicle.properties import ReferenceLengths
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
 SCHEMA = "spaceplane.aero_model"
 SCHEMA_VERSION = 1
+_UNKNOWN_CENTER = "not known: moments are about the centre of mass, which stands at the origin here"
 _RATES = {"p": "p b_ref/2V", "q": "q c_ref/2V", "r": "r b_ref/2V"}
 
 
@@ -66,7 +67,9 @@ def to_dataset(model: AeroModel) -> xr.Dataset:
             "c_ref_m": reference.chord,
             "b_ref_m": reference.span,
             "moment_center_m": list(reference.moment_center),
-            "moment_center_axes": "geometry axes: x aft, y right, z up",
+            "moment_center_axes": "geometry axes: x aft, y right, z up" if model.center_known else _UNKNOWN_CENTER,
+            "moment_center_known": int(model.center_known),
+            **{name: value for name, value in zip(LAG, model.lag, strict=True) if value},
             "beta_limit_rad": model.beta_limit,
             "interpolation": "linear; nothing is known outside the tables and where a value is missing",
         },
@@ -100,7 +103,9 @@ def from_dataset(data: xr.Dataset) -> AeroModel:
         base={name: _values(data[name]) for name in BASE},
         surfaces=surfaces,
         slopes={name: _values(data[name]) for name in SLOPES if name in data},
-        beta_limit=_number(data, "beta_limit_rad") if "beta_limit_rad" in data.attrs else math.radians(10.0),
+        beta_limit=_number(data, "beta_limit_rad", math.radians(10.0)),
+        lag=(_number(data, LAG[0], 0.0), _number(data, LAG[1], 0.0)),
+        center_known=_number(data, "moment_center_known", 1.0) != 0.0,
     )
 
 
@@ -177,7 +182,9 @@ def _attribute(data: xr.Dataset, name: str) -> object:
     return data.attrs[name]
 
 
-def _number(data: xr.Dataset, name: str) -> float:
+def _number(data: xr.Dataset, name: str, default: float | None = None) -> float:
+    if default is not None and name not in data.attrs:
+        return default
     value = np.asarray(_attribute(data, name))
     if value.size != 1 or value.dtype.kind not in "fiu" or not np.isfinite(value).all():
         raise InputError(f"attribute {name} = {value.tolist()!r}: must be a finite number")
