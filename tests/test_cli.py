@@ -25,6 +25,7 @@ COMMANDS = (
 TAEM = Path(__file__).parents[1] / "examples" / "horus_2b_taem.toml"
 FLOW = ["--area", "1", "--length", "1", "--span", "1", "--moment-center", "0,0,0"]
 PUBLISHED = "horus-2b-published"
+BOEING = Path(__file__).parents[1] / "examples" / "boeing747_cruise.toml"
 HEAD = "alpha_deg,M2,M3\n"
 
 
@@ -575,7 +576,7 @@ def test_sources_that_are_none(capfd, tmp_path, command):
         ("CD0", HEAD + "0,much,1\n20,1,1\n", "CD0.csv, row 2: M2 = 'much'"),
         ("Cm0", HEAD + "0,1\n20,1,1\n", "Cm0.csv, row 2"),
         ("Cm0", "alpha,M2\n0,1\n", "Cm0.csv: columns"),
-        ("CL0", "alpha_deg,M3,M2\n0,1,1\n20,1,1\n", "mach"),
+        ("CL0", "alpha_deg,M3,M2\n0,1,1\n20,1,1\n", "CL0.csv, row 1: M2 follows M3"),
         ("dCm_one_elevn", HEAD, "dCm_one_elevon"),
     ],
 )
@@ -600,6 +601,34 @@ def test_models_are_not_written_where_nothing_can_be(capfd, blocked, command):
 def test_bad_centres_of_mass(capfd, tmp_path, text):
     options = ["--center-of-mass", text, "--out", tmp_path / "o"]
     refused(capfd, "export", "jsbsim", PUBLISHED, *options, naming="--center-of-mass")
+    assert not (tmp_path / "o").exists()
+
+
+@pytest.mark.parametrize("lag", [("-5.9", "-6.314"), ("30", "-200")])
+def test_fly_finds_the_modes_of_a_derivatives_file(capfd, tmp_path, lag):
+    """Derivatives with dalpha/dt among them; `fly` takes its own air, so that of the file is left out."""
+    kept = [
+        x for x in BOEING.read_text().splitlines() if not x.startswith(("pressure_Pa", "temperature_K", "density_g"))
+    ]
+    text = "\n".join(kept).replace("Cl_p =", "Cm_elevator = -1.3\nCl_p =")
+    path = tmp_path / "b747.toml"
+    path.write_text(text.replace("CL_alphadot = -5.9", f"CL_alphadot = {lag[0]}").replace("-6.314", lag[1]))
+    assert run(capfd, "modes", path, "--json", tmp_path / "modes.json")[0] == 0
+    flown = run(capfd, "fly", path, "--no-control", "--json", tmp_path / "fly.json", "--out", tmp_path / "o")
+    assert flown[0] == 0, flown
+    modes = json.loads((tmp_path / "modes.json").read_text())["modes"]
+    [point] = json.loads((tmp_path / "fly.json").read_text())["points"]
+    assert len(modes) == len(point["modes"]) >= 5
+    for one, other in zip(modes, point["modes"], strict=True):
+        assert other["eigenvalue"] == pytest.approx(one["eigenvalue"], rel=1e-6, abs=1e-9), one["name"]
+
+
+@pytest.mark.parametrize("command", [["fly"], ["export", "jsbsim"]], ids=" ".join)
+def test_a_centre_of_mass_is_near_the_moment_centre(capfd, tmp_path, command):
+    out = ["--out", tmp_path / "o"]
+    naming = "--center-of-mass: 500,0,0 m is 487 m from the moment centre 13,0,0 m; allowed are up to 23 m"
+    refused(capfd, *command, PUBLISHED, "--center-of-mass", "500,0,0", *out, naming=naming)
+    refused(capfd, *command, BOEING, "--center-of-mass", "0.1,0,0", *out, naming="whose place it does not give")
     assert not (tmp_path / "o").exists()
 
 

@@ -245,6 +245,13 @@ def test_errors_of_what_the_model_does_not_know(text, message):
         descend(horus_2b_published(), MASS, settings)
 
 
+def test_a_lag_that_the_model_has_may_be_uncertain():
+    errors = read_errors("--uncertainty", "Cm_alphadot=10%")
+    settings = DescentSettings((2.5,), uncertainty=errors, samples=20, feedback=None)
+    [point] = descend(replace(horus_2b_published(), lag=(0.0, -0.5)), MASS, settings).points
+    assert point.likelihood.uncertainty.half_width["Cm_alphadot"] == pytest.approx(0.05)
+
+
 @pytest.mark.parametrize(
     ("wrong", "message"),
     [

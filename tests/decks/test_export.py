@@ -3,6 +3,7 @@
 import json
 import shutil
 import xml.etree.ElementTree as ET
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -70,6 +71,20 @@ def test_netcdf_model_is_a_source(capfd, tmp_path):
     assert np.array_equal(again.slopes["Cl_p"], complete().slopes["Cl_p"])
     assert read_source(str(tmp_path / "model.nc")).mass is None
     assert read_source(str(tmp_path / "model.nc"), "horus-2b").mass == HORUS_MASS
+
+
+@pytest.mark.parametrize(("form", "file"), [("jsbsim", "b.xml"), ("tudat", "README.txt"), ("csv", "README.txt")])
+def test_a_derivatives_file_says_that_its_moment_centre_is_no_known_place(capfd, tmp_path, form, file):
+    source = Path(__file__).parents[2] / "examples" / "boeing747_cruise.toml"
+    name = ["--name", "b"] if form == "jsbsim" else []
+    assert run(capfd, "export", form, source, *name, "--out", tmp_path)[0] == 0
+    [path] = tmp_path.rglob(file)
+    text = path.read_text()
+    assert "moments about the centre of mass; where it lies in the vehicle is not known" in text
+    assert "m behind the nose" not in text and "m, body axes, from the nose" not in text
+    assert "on dalpha/dt c_ref/2V): CL_alphadot = -5.9, Cm_alphadot = -6.314" in text
+    assert "mach 0.6 to 1" in text and "alpha -5 to 5 deg" in text  # as docs/decks.md says
+    assert "5 deg and Mach 0.2 of its flight point" in (source.parents[1] / "docs" / "decks.md").read_text()
 
 
 def test_sources(tables):

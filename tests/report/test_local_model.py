@@ -99,3 +99,45 @@ def test_errors_of_an_analysis_stay_behind_when_the_centre_of_mass_is_moved(capf
     assert cli.run([*fly, "--out", str(tmp_path / "as-it-is")]) in (0, 1)
     said = "errors of the source hold about its own moment centre and are left out"
     assert said in moved and said not in capfd.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (lambda p: p.pop("derivatives"), r"flight point 2 (Mach 1.5) lacks 'derivatives'"),
+        (lambda p: p.pop("mach"), "flight point 2 (Mach 1.5) lacks 'mach'"),
+        (lambda p: p.pop("coefficient_errors"), "flight point 2 (Mach 1.5) lacks 'coefficient_errors'"),
+        (lambda p: p.pop("name"), "flight point 2 lacks 'name'"),
+        (lambda p: p["coefficients"].pop("Cm"), "flight point 2 (Mach 1.5), coefficients lacks 'Cm'"),
+        (lambda p: p["derivatives"]["Cn_beta"].pop("value"), "(Mach 1.5), derivatives Cn_beta lacks 'value'"),
+        (lambda p: p["modes"][0].pop("eigenvalue"), "(Mach 1.5), modes 1 lacks 'eigenvalue'"),
+        (lambda p: p.update(verdicts=[3]), "(Mach 1.5), verdicts 1 is no mapping"),
+        (lambda p: p.update(mach="fast"), "(Mach 1.5): mach = 'fast' is not as an analysis writes it"),
+        (lambda p: p.update(modes=None), "(Mach 1.5): modes = 'None' is not as an analysis writes it"),
+    ],
+)
+def test_a_flight_point_that_lacks_something_is_one_line(capfd, result, tmp_path, change, message):
+    change(result["flight_points"][1])
+    path = tmp_path / "result.json"
+    path.write_text(json.dumps(result))
+    out = ["--out", str(tmp_path / "out")]
+    for command in (
+        ["fly", str(tmp_path), "--point", "2.5", *out],
+        ["export", "jsbsim", str(tmp_path), "--point", "2.5", *out],
+        ["compare", str(path), str(path)],
+        ["report", str(tmp_path)],
+    ):
+        assert cli.run(command) == 2
+        error = capfd.readouterr().err
+        assert error.startswith(f"error: {path}: damaged, ") and error.count("\n") == 1 and message in error, error
+    result["flight_points"][1] = 7
+    path.write_text(json.dumps(result))
+    with pytest.raises(InputError, match="flight point 2 is no mapping"):
+        read_result(tmp_path)
+
+
+def test_a_vehicle_without_reference_is_one_line(result, tmp_path):
+    del result["vehicle"]["reference"]
+    (tmp_path / "result.json").write_text(json.dumps(result))
+    with pytest.raises(InputError, match="vehicle lacks 'reference'"):
+        read_result(tmp_path)

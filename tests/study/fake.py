@@ -33,7 +33,13 @@ def evaluate(inputs: dict) -> dict:
     return {
         "schema": "spaceplane.result",
         "schema_version": 1,
-        "vehicle": {"name": "fake", "shape": {name: {"value": value} for name, value in shape.items()}},
+        "vehicle": {
+            "name": "fake",
+            "shape": {name: {"value": value} for name, value in shape.items()},
+            "deflections_deg": {},
+            "mass": {"mass_kg": 26000.0, "Ixx_kgm2": 119000.0, "Iyy_kgm2": 769000.0, "Izz_kgm2": 806000.0},
+            "reference": {"area_m2": 110.0, "c_ref_m": 23.0, "b_ref_m": 13.0, "moment_center_m": [13.0, 0.0, 0.0]},
+        },
         "settings": {"mesh": {"wall_cell": 0.3}},
         "mesh": {"cells": 12345},
         "flight_points": points,
@@ -53,8 +59,11 @@ def _point(mach: float, shape: dict, verdict: str, noise: float) -> dict:
         "mach": mach,
         "altitude_m": 20000.0,
         "alpha_deg": 10.0,
+        "gamma_deg": 0.0,
+        "bank_deg": 0.0,
         "velocity_ms": speed,
         "coefficients": {"CL": 0.4, "CD": 0.2 + 0.01 * relative[0], "Cm": 0.0, "L_over_D": 2.0},
+        "coefficient_errors": {},
         "derivatives": {name: {"value": value, "error": 0.01 * abs(value)} for name, value in values.items()},
         "modes": _modes(values),
         "verdicts": [

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from spaceplane.aero.model.derivatives import PAIRS
-from spaceplane.aero.model.model import AeroModel, OutsideTables
+from spaceplane.aero.model.model import LAG, AeroModel, OutsideTables
 from spaceplane.analysis.controllability import Controllability, controllability
 from spaceplane.analysis.feedback_settings import FeedbackSettings
 from spaceplane.analysis.likelihood import Likelihood, likelihood
@@ -268,8 +268,7 @@ def _at(model: AeroModel, mass: MassProperties, mach: float, settings: DescentSe
 
 def _check_errors(errors: Mapping[str, GivenError], model: AeroModel) -> None:
     """Refuse errors that cannot act, before anything is computed: a misspelt one must not pass for certain."""
-    lag = ("CL_alphadot", "Cm_alphadot")
-    unknown = (*model.unknown(), *lag)
+    unknown = (*model.unknown(), *(name for name, value in zip(LAG, model.lag, strict=True) if not value))
     for name, error in errors.items():
         surface = name.split("_", 1)[-1]
         if surface in PAIRS or (surface in CONTROLS and name in unknown):

@@ -25,7 +25,7 @@ def export(
         typer.Argument(
             metavar="SOURCE",
             help="Aerodynamic model: horus-2b-published, a folder of `spaceplane database`, a .nc file, a .toml file "
-            "of derivatives (of `modes`; linear) a folder of tables, or one of `spaceplane analyse` (jsbsim and "
+            "of derivatives (of `modes`; linear), a folder of tables, or one of `spaceplane analyse` (jsbsim and "
             "tudat: linear about one flight point).",
         ),
     ],
@@ -106,6 +106,7 @@ def _of_model(
 
     vehicle, point = which
     found = sources.read(source, vehicle, point)
+    sources.check_center(found.model, center)
     if vehicle is not None and form != "jsbsim" and not is_table_set(source):
         raise InputError(f"--vehicle: has no effect on {form} of {source}")
     if form == "jsbsim":

@@ -27,7 +27,8 @@ def fly(
         typer.Argument(
             metavar="SOURCE",
             help="Aerodynamic model: horus-2b-published, a folder of `spaceplane database`, a .nc file, a folder of "
-            "tables, or a folder of `spaceplane analyse` (linear about one flight point).",
+            "tables, a .toml file of derivatives (of `modes`) or a folder of `spaceplane analyse` (both linear about "
+            "one flight point).",
         ),
     ],
     mach: Annotated[
@@ -151,6 +152,7 @@ def fly(
     settings = DescentSettings(**given)
     if found.mass is None:
         raise InputError("--vehicle: needed, for the mass that the tables do not give")
+    sources.check_center(found.model, center)
     model = found.model if center is None else found.model.moved((center[0], center[1], center[2]))
     folder = writable_folder(out, "--out")
     with progress_bar() as tell:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -10,6 +12,7 @@ import typer
 from spaceplane.errors import InputError
 
 if TYPE_CHECKING:
+    from spaceplane.aero.model.model import AeroModel
     from spaceplane.decks.source import Source
 
 Point = Annotated[
@@ -41,3 +44,31 @@ def read(source: str, vehicle: str | None, point: str | None) -> Source:
     from spaceplane.decks.source import read_source
 
     return read_source(source, vehicle)
+
+
+def check_center(model: AeroModel, center: Sequence[float] | None) -> None:
+    """Refuse a centre of mass that no vehicle of these tables has, such as one in millimetres.
+
+    Args:
+        model: whose moment centre it is measured from.
+        center: x, y, z in geometry axes, m; None is that of the model.
+
+    Raises:
+        InputError: farther from the moment centre than the larger of chord and span, or that centre is not known.
+    """
+    if center is None:
+        return
+    said = ",".join(f"{x:g}" for x in center)
+    if not model.center_known:
+        raise InputError(
+            f"--center-of-mass: {said}, cannot be used: moments of {model.name} are about its centre of mass, whose "
+            "place it does not give"
+        )
+    reference = model.reference
+    away, reach = math.dist(center, reference.moment_center), max(reference.chord, reference.span)
+    if away > reach:
+        own = ",".join(f"{x:g}" for x in reference.moment_center)
+        raise InputError(
+            f"--center-of-mass: {said} m is {away:.4g} m from the moment centre {own} m; allowed are up to {reach:g} "
+            "m, the larger of chord and span"
+        )

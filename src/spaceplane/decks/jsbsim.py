@@ -162,11 +162,13 @@ def _header(root: ET.Element, model: AeroModel, full: AeroModel) -> None:
         "Units: coefficients without unit; angles in the tables rad; forces lbs and moments lbs ft by JSBSim",
         "Reference:",
         *_items(statement.reference_lines(full)),
+        *([] if full.center_known else ["  - AERORP and CG are put at the origin of the structural axes"]),
         f"Valid inside these limits only. Outside them JSBSim holds the value at the edge without a word; {INSIDE} "
         "is 0 there and 1 inside:",
         *_items(statement.limit_lines(full)),
         *filter(None, [statement.cut_line(model, full)]),
         statement.unknown_line(full),
+        *filter(None, [statement.lag_line(full)]),
     ]
     ET.SubElement(head, "note").text = "\n" + "\n".join(f"      {line}" for line in lines) + "\n    "
 

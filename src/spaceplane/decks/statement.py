@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from spaceplane import __version__
-from spaceplane.aero.model.model import AeroModel
+from spaceplane.aero.model.model import LAG, AeroModel
 from spaceplane.vehicle.controls import CONTROL_POSITIVE, CONTROLS
 
 AXES = (
@@ -26,11 +26,13 @@ def reference_lines(model: AeroModel) -> list[str]:
     """Reference area, lengths and point."""
     r = model.reference
     x, y, z = r.moment_center
+    center = f"the point {x:.10g} m behind the nose, {y:.10g} m to the right and {z:.10g} m above the reference axis"
+    if not model.center_known:
+        center = "the centre of mass; where it lies in the vehicle is not known"
     return [
         f"reference area {r.area:.10g} m2 (all coefficients), chord c_ref {r.chord:.10g} m (Cm and q), "
         f"span b_ref {r.span:.10g} m (Cl, Cn, p and r)",
-        f"moments about the point {x:.10g} m behind the nose, {y:.10g} m to the right and {z:.10g} m above the "
-        "reference axis",
+        f"moments about {center}",
     ]
 
 
@@ -64,6 +66,12 @@ def unknown_line(model: AeroModel) -> str:
     unknown = [name for name in model.unknown() if not name.endswith(tuple(f"_{surface}" for surface in missing))]
     unknown += [f"all of {surface}" for surface in missing]
     return "unknown and counted as zero: " + (", ".join(unknown) if unknown else "nothing")
+
+
+def lag_line(model: AeroModel) -> str:
+    """Derivatives with the rate of alpha, which no deck has; empty text without any."""
+    known = [f"{name} = {value:.10g}" for name, value in zip(LAG, model.lag, strict=True) if value]
+    return f"known, but not in these files (on dalpha/dt c_ref/2V): {', '.join(known)}" if known else ""
 
 
 def cut_line(model: AeroModel, full: AeroModel) -> str:

@@ -119,6 +119,7 @@ def _readme(model: AeroModel, files: tuple[str, ...]) -> str:
         *(f"  {line}" for line in statement.limit_lines(model)),
         "",
         statement.unknown_line(model),
+        *filter(None, [statement.lag_line(model)]),
     ]
     return "\n".join(lines) + "\n"
 

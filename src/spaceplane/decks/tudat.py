@@ -136,6 +136,12 @@ def _text(
 def _readme(model: AeroModel, full: AeroModel, files: tuple[str, ...]) -> str:
     r = full.reference
     x, y, z = r.moment_center
+    place = (
+        f"    moment_reference_point    {-x + 0.0:.10g}, {y:.10g}, {-z + 0.0:.10g} m, body axes, from the nose; where",
+        "      your centre of mass is given from another point, give this from there too",
+    )
+    if not full.center_known:
+        place = ("    moment_reference_point    your centre of mass, wherever that lies",)
     base = [name for name in files if name.startswith(("force", "moment"))]
     surfaces = [name for name in CONTROLS if name in full.surfaces]
     variables = [MACH, ALPHA, *([BETA] if len(sideslips(full)) else [])]
@@ -154,8 +160,7 @@ def _readme(model: AeroModel, full: AeroModel, files: tuple[str, ...]) -> str:
         f"    reference_length {r.chord:.10g} m, reference_area {r.area:.10g} m2",
         "    force_coefficients_frame  negative_aerodynamic_frame_coefficients",
         "    moment_coefficients_frame positive_body_fixed_frame_coefficients",
-        f"    moment_reference_point    {-x + 0.0:.10g}, {y:.10g}, {-z + 0.0:.10g} m, body axes, from the nose; where",
-        "      your centre of mass is given from another point, give this from there too",
+        *place,
     ]
     if surfaces:
         lines += [
@@ -190,6 +195,7 @@ def _readme(model: AeroModel, full: AeroModel, files: tuple[str, ...]) -> str:
         "Not in these files",
         f"  {statement.unknown_line(full)}",
         *([f"  known, but Tudat's files have no rates: {', '.join(lost)}"] if lost else []),
+        *(f"  {line}" for line in [statement.lag_line(full)] if line),
     ]
     return "\n".join(lines) + "\n"
 

@@ -132,7 +132,7 @@ def from_tables(content: Mapping[str, object]) -> ModesCase:
 def aero_model(case: ModesCase, name: str = "derivatives file") -> AeroModel:
     """The aerodynamics of a case, linear about its flight point and trimmed there without deflections.
 
-    The file does not say where its moment centre is, so the model should not be moved to another.
+    The file does not say where its moment centre is, so the model cannot be moved to another.
 
     Args:
         case: as read.
@@ -142,7 +142,7 @@ def aero_model(case: ModesCase, name: str = "derivatives file") -> AeroModel:
 
     point = case.point
     CL, CD = point.coefficients()
-    return linear_model(name, case.derivatives, case.reference, point.mach, point.alpha, CL, CD)
+    return linear_model(name, case.derivatives, case.reference, point.mach, point.alpha, CL, CD, center_known=False)
 
 
 def _derivatives(content: Mapping[str, object]) -> Derivatives:

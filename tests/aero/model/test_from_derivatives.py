@@ -1,6 +1,7 @@
 """Models that are linear about one flight point."""
 
 import math
+from dataclasses import replace
 
 import pytest
 from tests.aero.model import linear
@@ -27,7 +28,7 @@ def test_derivatives_come_back():
     for name, value in given.controls.items():
         assert found.controls[name] == pytest.approx(value, rel=1e-12), name
     assert model.coefficients(**POINT) == pytest.approx({"CL": 0.36, "CD": 0.2, "CY": 0, "Cl": 0, "Cm": 0, "Cn": 0})
-    assert "CL_alphadot and Cm_alphadot left out" in model.source
+    assert (found.CL_alphadot, found.Cm_alphadot) == model.lag == (given.CL_alphadot, given.Cm_alphadot) == (0.6, -0.7)
 
 
 def test_combined_controls_are_shared_out():
@@ -43,6 +44,8 @@ def test_it_holds_near_its_point_only():
     assert "Cl_p" in model.unknown() and "Cn_beta" not in model.unknown()
     with pytest.raises(OutsideTables, match=r"alpha = 22 deg: outside the tables, which run from 11\.6 to 21\.6 deg"):
         model.coefficients(2.5, math.radians(22.0))
+    with pytest.raises(InputError, match="Cm_alphadot = nan: must be a finite number"):
+        replace(model, lag=(0.0, math.nan))
     with pytest.raises(InputError, match="mach_range = 0"):
         made(horus.derivatives(), mach_range=0.0)
 
@@ -57,6 +60,8 @@ def test_a_derivatives_file_gives_a_model():
         "derivatives": {"unit": "per_degree", **horus.PER_DEGREE},
     }
     model = derivatives_file.aero_model(derivatives_file.from_tables(content))
-    assert model.reference.chord == 23.0
+    assert model.reference.chord == 23.0 and not model.center_known
+    with pytest.raises(InputError, match="does not say where its own is"):
+        model.moved((0.1, 0.0, 0.0))
     lifted = model.coefficients(2.5, math.radians(17.6))["CL"]
     assert lifted == pytest.approx(0.36 + horus.PER_DEGREE["CL_alpha"])

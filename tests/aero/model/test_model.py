@@ -1,6 +1,7 @@
 """The aerodynamic model: exact on what is bilinear, never outside its tables, moments about any centre."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -217,6 +218,13 @@ def test_moving_leaves_the_plane_of_symmetry_never_and_invents_nothing():
     partial = linear.model(slopes={"Cn_beta": 0.05, "Cm_q": -1.0})
     assert set(partial.moved(CENTER).slopes) == set()  # the side force and lift that act on the arm are unknown
     assert set(partial.moved((13.0, 0.0, 0.0)).slopes) == {"Cn_beta", "Cm_q"}
+
+
+def test_a_lag_is_known_about_its_own_centre_only():
+    model = replace(linear.model(), lag=(0.0, -0.5))
+    assert model.moved(model.reference.moment_center).lag == (0.0, -0.5)
+    with pytest.raises(InputError, match="CL_alphadot and Cm_alphadot of linear hold about its own only"):
+        model.moved((12.0, 0.0, 0.0))
 
 
 def test_mirrored_flight_gives_mirrored_coefficients():

@@ -2,6 +2,7 @@
 
 import math
 import shutil
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -12,7 +13,7 @@ from spaceplane.aero.model import netcdf
 from spaceplane.aero.model.derivatives import per_degree
 from spaceplane.aero.model.model import OutsideTables
 from spaceplane.aero.model.published import FOLDER, horus_2b_published
-from spaceplane.aero.model.table_set import read_table_set
+from spaceplane.aero.model.table_set import read_table, read_table_set
 from spaceplane.errors import InputError
 
 # Thesis Table 6.1, per degree and per unit Mach, Mach 2.5, alpha 16.6 deg.
@@ -105,11 +106,20 @@ def test_empty_cells_are_unknown(folder):
         ("CL0.csv", "0.16", "O.16", r"CL0.csv, row 3: M1.5 = 'O.16': must be a number"),
         ("CL0.csv", "M1.5", "Mach", "M.*must be a number"),
         ("CD0.csv", "45,1.32", "46,1.32", "alpha_deg differ"),
-        ("dCm_bodyflap.csv", "-10,5,", "-10,0,", "one row for each"),
+        ("dCm_bodyflap.csv", "-10,5,", "-10,0,", "row 13: delta_deg -10, alpha_deg 0 stands in row 12 already"),
+        ("dCm_bodyflap.csv", "-10,5,", "-10,6,", "dCm_bodyflap.csv: no row for delta_deg -20, alpha_deg 6"),
+        ("CD0.csv", "\n5,", "\n0,", "CD0.csv, row 3: alpha_deg 0 stands in row 2 already"),
+        ("CD0.csv", "M2,M3", "M3,M2", "CD0.csv, row 1: M2 follows M3; Mach numbers must increase"),
+        ("CD0.csv", "M2,M3", "M2,M2.0", "CD0.csv, row 1: M2.0 follows M2"),
+        ("CL0.csv", "M1.5", "M-1.5", "CL0.csv, row 1: M-1.5: Mach numbers must not be negative"),
+        ("CD0.csv", "M2,M3", "2,M3", "CD0.csv, row 1: column '2': must be M and a Mach number"),
+        ("CD0.csv", "5,0.1,0.09", "5,0.1,-0.09", "CD0.csv, row of alpha_deg 5, column M2: CD = -0.09: must be above 0"),
+        ("CD0.csv", "5,0.1,0.09", "5,0.1,0", "column M2: CD = 0: must be above 0"),
+        ("slopes.csv", "CY_beta_per_deg,", "CY_beta_per_degree,", "did you mean 'CY_beta_per_deg'"),
         ("dCm_bodyflap.csv", "-10,0,0.0056", "-10,0,1,0.0056", "has 8 cells, needed are 7"),
         ("dCL_bodyflap.csv", "\n20,", "\n21,", "deflections differ"),
-        ("slopes.csv", "Cn_beta", "Cn_betta", "did you mean 'Cn_beta'"),
-        ("dCm_bodyflap.csv", "0,5,0,0,0,0,0", "0,5,0,0.1,0,0,0", "must be 0 at deflection 0"),
+        ("slopes.csv", "Cn_beta", "Cn_betta", "did you mean 'Cn_beta_per_deg'"),
+        ("dCm_bodyflap.csv", "0,5,0,0,0,0,0", "0,5,0,0.1,0,0,0", "dCm_bodyflap.csv, row 23: M2 = 0.1: must be 0"),
     ],
 )
 def test_damaged_table_sets_are_refused(folder, name, old, new, message):
@@ -119,6 +129,17 @@ def test_damaged_table_sets_are_refused(folder, name, old, new, message):
     with pytest.raises(InputError, match=message) as caught:
         read_table_set(folder, linear.REFERENCE)
     assert "\n" not in str(caught.value)
+
+
+def test_a_table_needs_two_angles_two_mach_numbers_and_no_deflection(folder):
+    for name, text, message in (
+        ("CL0.csv", "alpha_deg,M2\n0,0.1\n5,0.2\n", "CL0.csv, row 1: M2 is the only Mach number; at least two"),
+        ("CL0.csv", "alpha_deg,M2,M3\n5,0.1,0.1\n", "CL0.csv: alpha_deg 5 is the only one; at least two"),
+        ("dCm_bodyflap.csv", "delta_deg,alpha_deg,M2,M3\n5,0,0,0\n5,5,0,0\n", "bodyflap.csv: no row of delta_deg 0"),
+    ):
+        with pytest.raises(InputError, match=message):
+            (folder / name).write_text(text)
+            read_table(folder / name)
 
 
 def test_missing_and_misspelt_files(folder, tmp_path):
@@ -133,12 +154,17 @@ def test_missing_and_misspelt_files(folder, tmp_path):
         read_table_set(folder, linear.REFERENCE)
 
 
-@pytest.mark.parametrize("make", [horus_2b_published, linear.model])
+def of_a_derivatives_file():
+    return replace(linear.model(), lag=(0.6, -0.7), center_known=False)
+
+
+@pytest.mark.parametrize("make", [horus_2b_published, linear.model, of_a_derivatives_file])
 def test_file_gives_the_model_back(make, tmp_path):
     model = make()
     netcdf.save(model, tmp_path / "model.nc")
     back = netcdf.load(tmp_path / "model.nc")
     assert (back.name, back.source, back.reference) == (model.name, model.source, model.reference)
+    assert (back.lag, back.center_known) == (model.lag, model.center_known)
     assert back.beta_limit == model.beta_limit and back.unknown() == model.unknown()
     for one, other in ((model.base, back.base), (model.slopes, back.slopes)):
         assert set(one) == set(other) and all(np.array_equal(one[n], other[n]) for n in one)
@@ -160,3 +186,56 @@ def test_files_that_are_no_models(tmp_path):
     netcdf.to_dataset(linear.model()).drop_vars("CD").to_netcdf(tmp_path / "part.nc")
     with pytest.raises(InputError, match="CD"):
         netcdf.load(tmp_path / "part.nc")
+
+
+def in_degrees(name):
+    return lambda data: data.assign_coords({name: (name, np.degrees(data[name].values), {"units": "deg"})})
+
+
+def without_units(name):
+    def change(data):
+        del data[name].attrs["units"]
+        return data
+
+    return change
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (in_degrees("alpha"), "alpha: units are 'deg'; needed are 'rad'"),
+        (in_degrees("deflection_body_flap"), "deflection_body_flap: units are 'deg'; needed are 'rad'"),
+        (without_units("alpha"), "alpha: has no units; needed is 'rad'"),
+        (without_units("Cn_beta"), "Cn_beta: has no units; needed is '1/rad'"),
+        (lambda d: d.assign(Cl_beta=d.Cl_beta.assign_attrs(units="1/deg")), "Cl_beta: units are '1/deg'"),
+        (lambda d: d.assign(mach=d.mach.assign_attrs(units="days")), "mach: units are 'days'; needed are '1'"),
+        (lambda d: d.rename(Cn_beta="Cnbeta"), "unknown variable 'Cnbeta': did you mean 'Cn_beta'"),
+        (lambda d: d.rename(dCm_body_flap="dCm_bodyflap"), "did you mean 'dCm_body_flap'"),
+        (lambda d: d.rename(deflection_body_flap="deflection_bodyflap"), "did you mean 'deflection_body_flap'"),
+        (lambda d: d.assign(CD=d.CD.isel(alpha=0, drop=True)), "CD: its dimensions are mach; needed are alpha, mach"),
+        (lambda d: d.assign(CD=d.CD.astype(str)), "CD: holds .*; numbers are needed"),
+        (lambda d: d.drop_vars("alpha"), "alpha is missing"),
+        (lambda d: d.drop_vars("deflection_body_flap"), "deflection_body_flap is missing"),
+        (lambda d: d.drop_attrs(deep=False).assign_attrs(schema="spaceplane.aero_model", schema_version=1), "name is"),
+        (lambda d: d.assign_attrs(b_ref_m="thirteen"), "b_ref_m = 'thirteen': must be a finite number"),
+        (lambda d: d.assign_attrs(c_ref_m=math.nan), "c_ref_m = .*nan.*: must be a finite number"),
+        (lambda d: d.assign_attrs(reference_area_m2=-110.0), "reference_area_m2 = -110: must be above 0"),
+        (lambda d: d.assign_attrs(beta_limit_rad="ten"), "beta_limit_rad = 'ten'"),
+        (lambda d: d.assign_attrs(moment_center_m=[13.0, 0.0]), "moment_center_m = .*: must be three finite numbers"),
+        (lambda d: d.assign_attrs(moment_center_m="13 0 0"), "moment_center_m = '13 0 0': must be three"),
+    ],
+)
+def test_files_of_other_units_names_and_sizes_are_refused(change, message, tmp_path):
+    path = tmp_path / "model.nc"
+    change(netcdf.to_dataset(linear.model())).to_netcdf(path)
+    with pytest.raises(InputError, match=message) as caught:
+        netcdf.load(path)
+    assert str(caught.value).startswith(f"{path}: ") and "\n" not in str(caught.value)
+
+
+def test_what_has_no_dimension_needs_no_units(tmp_path):
+    data = netcdf.to_dataset(linear.model())
+    for name in ("mach", "CL", "Cl_p", "dCm_body_flap"):
+        del data[name].attrs["units"]
+    data.to_netcdf(tmp_path / "model.nc")
+    assert np.array_equal(netcdf.load(tmp_path / "model.nc").base["CL"], linear.model().base["CL"])

@@ -28,11 +28,12 @@ def linear_model(
     alpha_range: float = math.radians(5.0),
     mach_range: float = 0.2,
     source: str = "",
+    center_known: bool = True,
 ) -> AeroModel:
     """The model C = C0 + C_alpha (alpha - alpha0) + C_M (M - M0) + ..., in a range about the flight point.
 
     Derivatives with elevator and aileron are shared out between the elevons, those with the rudder between the rudders.
-    Damping derivatives of 0 count as unknown. The model has no derivatives with the rate of alpha: they are left out.
+    Damping derivatives of 0 count as unknown. Those with the rate of alpha are the model's `lag`.
 
     Args:
         name: of the model.
@@ -43,6 +44,7 @@ def linear_model(
         alpha_range: rad to either side in which the derivatives are taken to hold.
         mach_range: the same in Mach number.
         source: where the numbers come from.
+        center_known: whether the moment centre is a known place, see `AeroModel`.
 
     Raises:
         InputError: a value is not finite, or a range is not positive or reaches Mach numbers below 0.
@@ -64,19 +66,18 @@ def linear_model(
     slopes = {
         slope: np.full(attack.shape, value) for slope, value in known.items() if value or slope in _STATIC_LATERAL
     }
-    notes = [f"linear about Mach {mach:g}, alpha {math.degrees(alpha):g} deg"]
-    lag = [n for n in ("CL_alphadot", "Cm_alphadot") if getattr(derivatives, n)]
-    if lag:
-        notes.append(f"{' and '.join(lag)} left out")
+    about = f"linear about Mach {mach:g}, alpha {math.degrees(alpha):g} deg"
     return AeroModel(
         name=name,
-        source="; ".join([source or "derivatives as given", *notes]),
+        source=f"{source or 'derivatives as given'}; {about}",
         reference=reference,
         alpha=alphas,
         mach=machs,
         base=base,
         surfaces={surface: _table(surface, per_rad, attack.shape) for surface, per_rad in _surfaces(derivatives)},
         slopes=slopes,
+        lag=(derivatives.CL_alphadot, derivatives.Cm_alphadot),
+        center_known=center_known,
     )
 
 

@@ -36,10 +36,11 @@ from spaceplane.errors import InputError, unknown_name
 from spaceplane.vehicle.controls import CONTROLS
 from spaceplane.vehicle.properties import ReferenceLengths
 
-__all__ = ["BASE", "SLOPES", "AeroModel", "OutsideTables", "SurfaceTable"]
+__all__ = ["BASE", "LAG", "SLOPES", "AeroModel", "OutsideTables", "SurfaceTable"]
 
 BASE = ("CL", "CD", "Cm")
 SLOPES = ("CY_beta", "Cl_beta", "Cn_beta", "CL_q", "Cm_q", "CY_p", "Cl_p", "Cn_p", "CY_r", "Cl_r", "Cn_r")
+LAG = ("CL_alphadot", "Cm_alphadot")
 ZERO = 1e-12
 _STEP = 1e-30  # of the complex step: any size does that squares away
 
@@ -98,6 +99,10 @@ class AeroModel:
         slopes: of `SLOPES` -> [alpha, mach], per rad of sideslip or per reduced rate. One that is missing is unknown:
             it counts as zero and is named by `unknown`.
         beta_limit: greatest sideslip, rad, to either side, up to which the slopes are taken to hold.
+        lag: (CL_alphadot, Cm_alphadot) on dalpha/dt c_ref/2V, the same everywhere; not in `coefficients`, which are
+            those of a steady angle of attack.
+        center_known: whether the moment centre is a known place; where not, moments are about the centre of mass,
+            wherever that lies, and that of `reference` means nothing.
 
     Raises:
         InputError: an axis, a shape, a name or a coefficient that is wrong or missing.
@@ -112,6 +117,8 @@ class AeroModel:
     surfaces: Mapping[str, SurfaceTable] = field(default_factory=dict)
     slopes: Mapping[str, np.ndarray] = field(default_factory=dict)
     beta_limit: float = math.radians(10.0)
+    lag: tuple[float, float] = (0.0, 0.0)
+    center_known: bool = True
 
     def __post_init__(self) -> None:
         alpha, mach = _axis("alpha", self.alpha), _axis("mach", self.mach)
@@ -133,6 +140,9 @@ class AeroModel:
                 _table(f"{name}, increment of {coefficient}", values, (len(surface.deflection), *shape))
         if not 0.0 <= self.beta_limit <= math.pi / 2:
             raise InputError(f"beta_limit = {self.beta_limit}: must lie between 0 and pi/2 rad")
+        for name, value in zip(LAG, self.lag, strict=True):
+            if not math.isfinite(value):
+                raise InputError(f"{name} = {value}: must be a finite number")
         object.__setattr__(self, "alpha", alpha)
         object.__setattr__(self, "mach", mach)
         object.__setattr__(self, "base", {name: _table(name, self.base[name], shape) for name in BASE})
@@ -194,7 +204,8 @@ class AeroModel:
                 slope = node_slope(surface.deflection, values, place.get(name, 0.0))
                 controls[f"{coefficient}_{name}"] = self._known(f"{coefficient} of {name}", slope, mach, alpha)
         lateral = {"CY_beta": 0.0, "Cl_beta": 0.0, "Cn_beta": 0.0}
-        plain = {name: float(value) for name, value in (static | lateral | rest).items()}
+        lag = dict(zip(LAG, self.lag, strict=True))
+        plain = {name: float(value) for name, value in (static | lateral | rest | lag).items()}
         return Derivatives(**plain, controls={name: float(value) for name, value in controls.items()})
 
     def moved(self, center: tuple[float, float, float]) -> AeroModel:
@@ -204,9 +215,14 @@ class AeroModel:
             center: x, y, z in geometry axes, m; y must stay that of the present centre.
 
         Raises:
-            InputError: not three finite numbers, or the centre leaves the plane of symmetry.
+            InputError: not three finite numbers, the centre leaves the plane of symmetry, the present one is not a
+                known place, or the model has a lag, which is known about the present one only.
         """
         reference = replace(self.reference, moment_center=center)
+        if reference != self.reference and not self.center_known:
+            raise InputError(f"moment centre: {self.name} does not say where its own is, so it cannot be moved")
+        if reference != self.reference and any(self.lag):
+            raise InputError(f"moment centre: {' and '.join(LAG)} of {self.name} hold about its own only")
         arms = move.arms_between(self.reference, reference)
         base = move.base(self.alpha, self.base, arms)
         surfaces = {
@@ -334,7 +350,8 @@ def _slope(function: Callable[[complex, str], dict], value: float, axis: np.ndar
 def _axis(name: str, values: object) -> np.ndarray:
     axis = np.array(values, dtype=float)
     if axis.ndim != 1 or len(axis) < 2 or not np.all(np.isfinite(axis)) or not np.all(np.diff(axis) > 0):
-        raise InputError(f"{name}: needs at least two finite, increasing values")
+        found = ", ".join(f"{value:g}" for value in axis.ravel())
+        raise InputError(f"{name} = {found}: needs at least two finite, increasing values")
     axis.flags.writeable = False
     return axis
 

@@ -16,6 +16,7 @@ import csv
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -23,7 +24,7 @@ from scipy.interpolate import RegularGridInterpolator
 
 from spaceplane.aero.axes import FORCES_AND_MOMENTS
 from spaceplane.aero.integrate import LATERAL
-from spaceplane.aero.model.model import BASE, SLOPES, AeroModel, SurfaceTable
+from spaceplane.aero.model.model import BASE, SLOPES, ZERO, AeroModel, SurfaceTable
 from spaceplane.errors import InputError, unknown_name
 from spaceplane.vehicle.properties import ReferenceLengths
 
@@ -81,22 +82,68 @@ def read_table(path: Path) -> Table:
     """One file of base coefficients or increments.
 
     Raises:
-        InputError: missing, not of the layout, a cell that is no number, a row twice, or a grid with holes.
+        InputError: missing, not of the layout, a cell that is no number, Mach numbers that do not increase, a row that
+            is missing or there twice, or an increment without deflection.
     """
     rows = _rows(path)
     head = [cell.strip() for cell in rows[0]]
     angles = 2 if head[0] == "delta_deg" else 1
     if head[:angles] != ["delta_deg", "alpha_deg"][2 - angles :] or len(head) == angles:
         raise InputError(f"{path}: columns {','.join(head)}: needed are [delta_deg,]alpha_deg,M1.5,...")
-    mach = np.array([_number(path, 1, name, name.removeprefix("M")) for name in head[angles:]])
+    mach = _mach_numbers(path, head[angles:])
     body = _body(path, rows[1:], head, required=angles)
-    delta = body[:, 0] if angles == 2 else np.zeros(len(body))
-    deflection, alpha = np.unique(delta), np.unique(body[:, angles - 1])
-    order = np.lexsort((body[:, angles - 1], delta))
-    pairs = np.column_stack([delta, body[:, angles - 1]])
-    if len(np.unique(pairs, axis=0)) != len(pairs) or len(pairs) != len(deflection) * len(alpha):
-        raise InputError(f"{path}: needs one row for each of {len(deflection)} deflections and {len(alpha)} angles")
-    return Table(deflection, alpha, mach, body[order, angles:].reshape(len(deflection), len(alpha), len(mach)))
+    delta, attack = (body[:, 0] if angles == 2 else np.zeros(len(body))), body[:, angles - 1]
+    deflection, alpha = np.unique(delta), np.unique(attack)
+    _one_row_each(path, delta, attack, angles == 2)
+    order = np.lexsort((attack, delta))
+    values = body[:, angles:]
+    if angles == 2:
+        _nothing_without_deflection(path, head[angles:], delta, values)
+    return Table(deflection, alpha, mach, values[order].reshape(len(deflection), len(alpha), len(mach)))
+
+
+def _mach_numbers(path: Path, names: Sequence[str]) -> np.ndarray:
+    for name in names:
+        if not name.startswith("M"):
+            raise InputError(f"{path}, row 1: column {name!r}: must be M and a Mach number, such as M1.5")
+    mach = np.array([_number(path, 1, name, name.removeprefix("M")) for name in names])
+    if len(mach) < 2:
+        raise InputError(f"{path}, row 1: {names[0]} is the only Mach number; at least two are needed")
+    if mach[0] < 0.0:
+        raise InputError(f"{path}, row 1: {names[0]}: Mach numbers must not be negative")
+    for (before, low), (after, high) in pairwise(zip(names, mach, strict=True)):
+        if high <= low:
+            raise InputError(f"{path}, row 1: {after} follows {before}; Mach numbers must increase")
+    return mach
+
+
+def _one_row_each(path: Path, delta: np.ndarray, alpha: np.ndarray, deflected: bool) -> None:
+    """Refuse a pair of deflection and angle of attack, deg, that stands there twice or not at all."""
+
+    def pair(d: float, a: float) -> str:
+        return f"delta_deg {d:g}, alpha_deg {a:g}" if deflected else f"alpha_deg {a:g}"
+
+    seen: dict[tuple[float, float], int] = {}
+    for row, one in enumerate(zip(delta, alpha, strict=True), start=2):
+        if one in seen:
+            raise InputError(f"{path}, row {row}: {pair(*one)} stands in row {seen[one]} already")
+        seen[one] = row
+    for d in np.unique(delta):
+        for a in np.unique(alpha):
+            if (d, a) not in seen:
+                raise InputError(f"{path}: no row for {pair(d, a)}; every deflection needs every angle of attack")
+    if len(np.unique(alpha)) < 2:
+        raise InputError(f"{path}: alpha_deg {alpha[0]:g} is the only one; at least two are needed")
+
+
+def _nothing_without_deflection(path: Path, names: Sequence[str], delta: np.ndarray, values: np.ndarray) -> None:
+    neutral = np.flatnonzero(delta == 0.0)
+    if not len(neutral):
+        raise InputError(f"{path}: no row of delta_deg 0; increments without deflection, all 0, are needed")
+    for row in neutral:
+        for name, value in zip(names, values[row], strict=True):
+            if abs(value) > ZERO:
+                raise InputError(f"{path}, row {row + 2}: {name} = {value:g}: must be 0 at deflection 0")
 
 
 def read_slopes(path: Path) -> SlopeTable:
@@ -114,7 +161,8 @@ def read_slopes(path: Path) -> SlopeTable:
     for column, name in enumerate(head[2:], start=2):
         bare = name.removesuffix("_per_deg")
         if bare not in SLOPES or (bare != name and not bare.endswith("_beta")):
-            raise InputError(f"{path}: {unknown_name('slope', name, SLOPES)}")
+            known = [*SLOPES, *(f"{slope}_per_deg" for slope in SLOPES if slope.endswith("_beta"))]
+            raise InputError(f"{path}: {unknown_name('slope', name, known)}")
         if bare in values:
             raise InputError(f"{path}: {bare}: given twice")
         values[bare] = body[:, column] * (math.degrees(1.0) if bare != name else 1.0)
@@ -144,6 +192,7 @@ def read_table_set(
     grid = base["CL"]
     for coefficient, table in base.items():
         _same_grid(folder / f"{coefficient}0.csv", table, grid)
+    _drag_above_zero(folder / "CD0.csv", base["CD"])
     surfaces, notes = {}, []
     for kind, members in SURFACE_FILES.items():
         tables = _increments(folder, kind, grid)
@@ -210,6 +259,15 @@ def _same_grid(path: Path, table: Table, grid: Table) -> None:
     for what in ("alpha_deg", "mach"):
         if not np.array_equal(getattr(table, what), getattr(grid, what)):
             raise InputError(f"{path}: its values of {what} differ from those of CL0.csv")
+
+
+def _drag_above_zero(path: Path, table: Table) -> None:
+    for alpha, line in zip(table.alpha_deg, table.values[0], strict=True):
+        for mach, value in zip(table.mach, line, strict=True):
+            if value <= 0.0:
+                raise InputError(
+                    f"{path}, row of alpha_deg {alpha:g}, column M{mach:g}: CD = {value:g}: must be above 0"
+                )
 
 
 def _on_grid(path: Path, table: SlopeTable, grid: Table) -> dict[str, np.ndarray]:

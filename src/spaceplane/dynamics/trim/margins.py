@@ -25,7 +25,7 @@ class StaticMargin:
         Cm_alpha: 1/rad, about the model's moment centre.
         CN_alpha: 1/rad.
         margin: of c_ref, positive for a stable vehicle.
-        neutral_point: m aft of the nose, at the height of the moment centre.
+        neutral_point: m aft of the nose, at the height of the moment centre; NaN where that is not a known place.
     """
 
     Cm_alpha: float
@@ -90,7 +90,8 @@ def margin_of(model: AeroModel, alpha: float, found: Mapping[str, float], slopes
     if CN_alpha == 0.0:
         raise InputError(f"alpha = {math.degrees(alpha):g} deg: CN does not change there, so there is no neutral point")
     margin = -slopes.Cm_alpha / CN_alpha
-    station = model.reference.moment_center[0] + margin * model.reference.chord
+    start = model.reference.moment_center[0] if model.center_known else math.nan
+    station = start + margin * model.reference.chord
     return StaticMargin(slopes.Cm_alpha, CN_alpha, margin, station)
 
 
