@@ -373,12 +373,58 @@ def test_what_an_accuracy_does_not_go_with(capfd, tmp_path, command, options, na
     [
         (("--adapt", "1"), "--adapt: 1, goes with --cells"),
         (("--adapt", "4", "--cells", "40k"), "--adapt: 4"),
-        (("--adapt", "1", "--cells", "40k", "--accuracy", "5%"), "adapt = 1: not allowed with accuracy"),
+        (("--adapt", "1", "--cells", "40k", "--accuracy", "5%"), "--adapt: 1, not allowed with accuracy"),
         (("--adapt", "1", "--cells", "40k", "--edges", "2"), "--edges: 2, not allowed with --adapt 1"),
     ],
 )
 def test_what_an_adapted_analysis_does_not_go_with(capfd, tmp_path, options, naming):
     refused(capfd, "analyse", "horus-2b", "--out", tmp_path / "o", *options, naming=naming)
+
+
+@pytest.mark.parametrize(
+    ("options", "line"),
+    [
+        (("--cells", "10"), "--cells: 10, allowed 1000 to"),
+        (("--cell", "1e-9"), "--cell: 1e-09 m gives more than"),
+        (
+            ("--friction", "laminar", "--altitude", "2e4", "--emissivity", "3"),
+            "--emissivity: 3.0, above 0 and at most 1",
+        ),
+        (("--wall-temperature", "300"), "--wall-temperature: 300, needs friction laminar or turbulent"),
+        (
+            ("--friction", "laminar", "--altitude", "2e4", "--emissivity", "0.8", "--wall-temperature", "300"),
+            "--emissivity: 0.8, give it or --wall-temperature, not both",
+        ),
+        (("--rates", "nan,0,0"), "--rates: 'nan' is not a number"),
+        (("--rates", "0,1e200,0"), "--rates: a point of the body would move"),
+        (("--cell", "1000"), "--cell: 1000 m too coarse for this body"),
+        (("--cells", "1000"), "--cells: 1000 gives wall cells of"),
+    ],
+)
+def test_errors_name_the_option_and_not_the_setting(capfd, tmp_path, options, line):
+    from spaceplane.mesh.generate import compile_kernels
+
+    compile_kernels()
+    body = tetrahedron(tmp_path / "t.stl")
+    assert refused(capfd, "flow", body, "--mach", 2, *FLOW, *options, naming="--").startswith(f"error: {line}")
+
+
+def test_a_mesh_too_coarse_for_the_vehicle_is_refused_with_a_cell_that_would_do(capfd, tmp_path):
+    from spaceplane.mesh.generate import compile_kernels
+
+    compile_kernels()
+    sparse = ("--no-controls", "--uncertainty", "iteration", "--mach", "2.5", "--out", tmp_path / "o")
+    code, _, err = run(capfd, "analyse", "horus-2b", "--cell", 30, "--edges", 0, *sparse)
+    assert code == 2 and re.search(r"error: --cell: 30 m too coarse .*; [\d.]+ m \(\d+ cells\) would do$", err.strip())
+
+
+def test_beyond_what_was_checked_is_a_warning(capfd):
+    from spaceplane.commands.arguments import warn_beyond_verified
+
+    warn_beyond_verified([2.0, 25.0])
+    assert capfd.readouterr() == ("", "")
+    warn_beyond_verified([2.0, 30.0])
+    assert capfd.readouterr() == ("", "warning: --mach: 30, beyond Mach 25 nothing has been checked\n")
 
 
 def test_rates_and_altitudes_that_no_flight_has(capfd, tmp_path):
@@ -782,7 +828,7 @@ def test_local_inclination_from_the_command_line(capfd, tmp_path):
     ("options", "naming"),
     [
         (("--method", "newtonain"), "did you mean 'newtonian'"),
-        (("--method", "newtonian", "--mach", "1.5,3"), "mach = 1.5"),
+        (("--method", "newtonian", "--mach", "1.5,3"), "--mach: 1.5"),
         (("--method", "newtonian", "--cell", "0.1"), "--cell: 0.1"),
         (("--method", "tangent", "--cells", "1000"), "--cells: 1000"),
         (("--method", "tangent", "--adapt", "1"), "--adapt: 1"),

@@ -124,3 +124,9 @@ def test_bad_conditions_are_refused_before_meshing(monkeypatch):
     for machs, alphas, message in (([0.0], [0.0], "mach"), ([2.0], [math.nan], "alpha"), ([], [0.0], "at least one")):
         with pytest.raises(InputError, match=message):
             run_flow(cone(HALF_ANGLE), FreeStreams(machs, alphas), REFERENCE, MESH, FlowSettings())
+
+
+def test_rates_that_are_no_numbers_are_named():
+    streams = FreeStreams([2.0], rates=(0.0, math.nan, 0.0))
+    with pytest.raises(InputError, match=r"rates: \(0.0, nan, 0.0\), three finite"):
+        streams.conditions(REFERENCE, cone(HALF_ANGLE).points)

@@ -240,6 +240,17 @@ def test_fine_edges_have_half_sized_cells(seed):
         ({"far_field": 0.0}, "far_field"),
         ({"target_cells": 3}, "target_cells"),
         ({"wall_layers": 0}, "wall_layers"),
+        ({"wall_cell": "a"}, "wall_cell: 'a'"),
+        ({"wall_cell": True}, "wall_cell: True"),
+        ({"target_cells": "many"}, "target_cells: 'many'"),
+        ({"far_field": None}, "far_field: None"),
+        ({"boxes": 3}, "boxes: 3"),
+        ({"boxes": ((0, 0, 0, 1, 1, 1, 0.1),)}, "boxes: .*RefinementBox"),
+        ({"boxes": (RefinementBox((0, 0, 0), (1, 1), 0.1),)}, r"boxes: lower \(0, 0, 0\), upper \(1, 1\)"),
+        ({"boxes": (RefinementBox((0, 0, 0), (1, 1, 1), "s"),)}, "boxes: cell 's'"),
+        ({"fine_parts": "wing"}, "fine_parts: 'wing'"),
+        ({"frustums": 3}, "frustums: 3"),
+        ({"domain": 3}, "domain: 3"),
     ],
 )
 def test_bad_settings_name_the_field(settings, word):

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from spaceplane.commands import options
-from spaceplane.commands.arguments import mach_numbers, numbers, writable_file, write_json
+from spaceplane.commands.arguments import mach_numbers, numbers, warn_beyond_verified, writable_file, write_json
 from spaceplane.commands.progress import progress_bar
 from spaceplane.errors import InputError
 from spaceplane.files import writable_folder
@@ -99,6 +99,7 @@ def analyse(
     )
     writable_folder(folder, "--out")
     writable_file(json_file, "--json")
+    warn_beyond_verified(machs)
     from spaceplane import pipeline
     from spaceplane.report.read import read_result
     from spaceplane.report.summary import complain, print_summary, shortcomings

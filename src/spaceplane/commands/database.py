@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from spaceplane.commands import options
-from spaceplane.commands.arguments import number, numbers, writable_file, write_json
+from spaceplane.commands.arguments import number, numbers, warn_beyond_verified, writable_file, write_json
 from spaceplane.commands.progress import progress_bar
 from spaceplane.errors import InputError, unknown_name
 from spaceplane.files import writable_folder
@@ -148,6 +148,7 @@ def _settings(
     if grid["alphas"] is not None:
         fields["alphas"] = tuple(math.radians(a) for a in numbers("--alpha", grid["alphas"], "degrees"))
     if tier == EULER:
+        warn_beyond_verified(fields.get("machs", ()))
         if method is not None:
             raise InputError(f"--method: {method}, goes with --tier fast only")
         fields["increments"] = options.increment_settings(*increments)

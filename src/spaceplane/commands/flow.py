@@ -19,6 +19,7 @@ from spaceplane.commands.arguments import (
     number,
     numbers,
     positive,
+    warn_beyond_verified,
     writable_file,
     write_json,
 )
@@ -129,6 +130,7 @@ def flow(
         given["--decades"] = decades if decades != "3" else None
         _refuse_options(given, f"allowed with --method {EULER} only")
         return _inclination(body, method, grid, reference, json_file)
+    warn_beyond_verified(grid[0])
     from spaceplane.mesh.settings import MeshSettings
 
     corners = None if domain is None else numbers("--domain", domain, "m", 6)
