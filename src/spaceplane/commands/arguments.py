@@ -18,6 +18,7 @@ ASSIGNING = ("--set", "--deflect")
 OPTION_OF = {
     "accuracy": "--accuracy",
     "adapt": "--adapt",
+    "altitude_m": "--altitude",
     "base": "--base",
     "boxes": "--refine-box",
     "category": "--category",

@@ -105,6 +105,8 @@ def database(
     writable_folder(folder, "--out")
     writable_file(json_file, "--json")
     found = _computed(subject, settings, store or folder / "store.sqlite", workers)
+    if tier == "euler":
+        warn_beyond_verified(settings.machs)
     from spaceplane.report import database as report
 
     files = report.write(found, folder)
@@ -148,7 +150,6 @@ def _settings(
     if grid["alphas"] is not None:
         fields["alphas"] = tuple(math.radians(a) for a in numbers("--alpha", grid["alphas"], "degrees"))
     if tier == EULER:
-        warn_beyond_verified(fields.get("machs", ()))
         if method is not None:
             raise InputError(f"--method: {method}, goes with --tier fast only")
         fields["increments"] = options.increment_settings(*increments)
