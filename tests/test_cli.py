@@ -189,12 +189,12 @@ def test_unknown_choices(capfd, tmp_path, options):
     [
         (["--friction", "laminar", "--wall-temperature", "0"], "--wall-temperature"),
         (["--friction", "laminar", "--wall-temperature", "warm"], "--wall-temperature"),
-        (["--friction", "off", "--emissivity", "0.8"], "emissivity = 0.8: needs friction"),
-        (["--friction", "laminar", "--emissivity", "2"], "emissivity = 2"),
+        (["--friction", "off", "--emissivity", "0.8"], "--emissivity: 0.8, needs friction"),
+        (["--friction", "laminar", "--emissivity", "2"], "--emissivity: 2"),
         (["--friction", "laminar", "--emissivity", "dark"], "--emissivity"),
         (["--friction", "laminar", "--emissivity", "0.8", "--wall-temperature", "300"], "not both"),
-        (["--friction", "off", "--wall-temperature", "300"], "wall_temperature_K = 300: needs friction"),
-        (["--friction", "turbulent", "--transition-reynolds", "-1"], "transition_reynolds = -1"),
+        (["--friction", "off", "--wall-temperature", "300"], "--wall-temperature: 300, needs friction"),
+        (["--friction", "turbulent", "--transition-reynolds", "-1"], "--transition-reynolds: -1"),
         (["--friction", "turbulent", "--transition-reynolds", "x"], "--transition-reynolds"),
         (["--friction", "laminar", "--transition-reynolds", "1e6"], "needs friction turbulent"),
     ],
@@ -212,7 +212,7 @@ def test_bad_increments(capfd, tmp_path, options, naming):
         (["--friction", "laminar"], "--altitude: missing"),
         (["--altitude", "20000"], "--altitude: 20000"),
         (["--friction", "laminar", "--altitude", "high"], "--altitude"),
-        (["--friction", "laminar", "--altitude", "200000"], "altitude_m = 200000"),
+        (["--friction", "laminar", "--altitude", "200000"], "--altitude: 200000"),
     ],
 )
 def test_friction_of_a_flow_goes_with_its_altitude(capfd, tmp_path, options, naming):
@@ -224,7 +224,7 @@ def test_friction_of_a_flow_goes_with_its_altitude(capfd, tmp_path, options, nam
     [
         (["--gas", "equilibrium"], "--altitude: missing"),
         (["--gas", "equilibirum", "--altitude", "50000"], "did you mean 'equilibrium'"),
-        (["--gas", "equilibrium", "--altitude", "50000", "--friction", "laminar"], "friction = 'laminar'"),
+        (["--gas", "equilibrium", "--altitude", "50000", "--friction", "laminar"], "--friction: 'laminar'"),
         (["--gas", "equilibrium", "--altitude", "50000", "--mach", "40"], "ionises"),
         (["--gas", "equilibrium", "--altitude", "50000", "--method", "newtonian"], "--gas"),
     ],
@@ -339,6 +339,9 @@ def test_unwritable_flow_output(capfd, tmp_path, option, name):
         ("--adapt", "4"), ("--adapt", "0.5"), ("--edges", "6"), ("--edges", "-1"), ("--edges", "1.5"), ("--edges", "a"),
         ("--edges", ""), ("--edges", "2,4,4"), ("--edges", "2,0"), ("--edges", "2,99"), ("--edges", "1,4"),
         ("--decades", "1"), ("--decades", "11"), ("--decades", "deep"),
+        ("--refine-box", "0,0,0,1,1,1"), ("--refine-box", "0,0,0,1,1,1,0"), ("--refine-box", "0,0,0,1,-1,1,0.1"),
+        ("--refine-box", "a,0,0,1,1,1,1"), ("--refine-box", "0,0,0,1,1,1,nan"), ("--refine-box", "9e3,0,0,1e4,1,1,1"),
+        ("--refine-box", "0,0,0,1,1,1,1e-9"), ("--refine-parts", "wing"), ("--refine-parts", ","),
     ],
 )  # fmt: skip
 def test_bad_flow_options(capfd, tmp_path, option, text):
@@ -374,12 +377,62 @@ def test_what_an_accuracy_does_not_go_with(capfd, tmp_path, command, options, na
     [
         (("--adapt", "1"), "--adapt: 1, goes with --cells"),
         (("--adapt", "4", "--cells", "40k"), "--adapt: 4"),
-        (("--adapt", "1", "--cells", "40k", "--accuracy", "5%"), "adapt = 1: not allowed with accuracy"),
+        (("--adapt", "1", "--cells", "40k", "--accuracy", "5%"), "--adapt: 1, not allowed with accuracy"),
         (("--adapt", "1", "--cells", "40k", "--edges", "2"), "--edges: 2, not allowed with --adapt 1"),
+        (
+            ("--adapt", "1", "--cells", "40k", "--refine-parts", "wing"),
+            "--refine-parts: wing, not allowed with --adapt 1",
+        ),
     ],
 )
 def test_what_an_adapted_analysis_does_not_go_with(capfd, tmp_path, options, naming):
     refused(capfd, "analyse", "horus-2b", "--out", tmp_path / "o", *options, naming=naming)
+
+
+@pytest.mark.parametrize(
+    ("options", "line"),
+    [
+        (("--cells", "10"), "--cells: 10, allowed 1000 to"),
+        (("--cell", "1e-9"), "--cell: 1e-09 m gives more than"),
+        (
+            ("--friction", "laminar", "--altitude", "2e4", "--emissivity", "3"),
+            "--emissivity: 3.0, above 0 and at most 1",
+        ),
+        (("--wall-temperature", "300"), "--wall-temperature: 300, needs friction laminar or turbulent"),
+        (
+            ("--friction", "laminar", "--altitude", "2e4", "--emissivity", "0.8", "--wall-temperature", "300"),
+            "--emissivity: 0.8, give it or --wall-temperature, not both",
+        ),
+        (("--rates", "nan,0,0"), "--rates: 'nan' is not a number"),
+        (("--rates", "0,1e200,0"), "--rates: a point of the body would move"),
+        (("--cell", "1000"), "--cell: 1000 m too coarse for this body"),
+        (("--cells", "1000"), "--cells: 1000 gives wall cells of"),
+    ],
+)
+def test_errors_name_the_option_and_not_the_setting(capfd, tmp_path, options, line):
+    from spaceplane.mesh.generate import compile_kernels
+
+    compile_kernels()
+    body = tetrahedron(tmp_path / "t.stl")
+    assert refused(capfd, "flow", body, "--mach", 2, *FLOW, *options, naming="--").startswith(f"error: {line}")
+
+
+def test_a_mesh_too_coarse_for_the_vehicle_is_refused_with_a_cell_that_would_do(capfd, tmp_path):
+    from spaceplane.mesh.generate import compile_kernels
+
+    compile_kernels()
+    sparse = ("--no-controls", "--uncertainty", "iteration", "--mach", "2.5", "--out", tmp_path / "o")
+    code, _, err = run(capfd, "analyse", "horus-2b", "--cell", 30, "--edges", 0, *sparse)
+    assert code == 2 and re.search(r"error: --cell: 30 m too coarse .*; [\d.]+ m \(\d+ cells\) would do$", err.strip())
+
+
+def test_beyond_what_was_checked_is_a_warning(capfd):
+    from spaceplane.commands.arguments import warn_beyond_verified
+
+    warn_beyond_verified([2.0, 25.0])
+    assert capfd.readouterr() == ("", "")
+    warn_beyond_verified([2.0, 30.0])
+    assert capfd.readouterr() == ("", "warning: --mach: 30, beyond Mach 25 nothing has been checked\n")
 
 
 def test_rates_and_altitudes_that_no_flight_has(capfd, tmp_path):
@@ -811,11 +864,15 @@ def test_local_inclination_from_the_command_line(capfd, tmp_path):
     ("options", "naming"),
     [
         (("--method", "newtonain"), "did you mean 'newtonian'"),
-        (("--method", "newtonian", "--mach", "1.5,3"), "mach = 1.5"),
+        (("--method", "newtonian", "--mach", "1.5,3"), "--mach: 1.5"),
         (("--method", "newtonian", "--cell", "0.1"), "--cell: 0.1"),
         (("--method", "tangent", "--cells", "1000"), "--cells: 1000"),
         (("--method", "tangent", "--adapt", "1"), "--adapt: 1"),
         (("--method", "tangent", "--edges", "1"), "--edges: 1"),
+        (("--method", "tangent", "--refine-box", "0,0,0,1,1,1,0.1"), "--refine-box: 0,0,0,1,1,1,0.1, allowed with"),
+        (("--method", "tangent", "--refine-parts", "w"), "--refine-parts: w, allowed with --method euler only"),
+        (("--cells", "40k", "--refine-parts", "w", "--adapt", "1"), "--refine-parts: w, not allowed with --adapt 1"),
+        (("--cells", "40k", "--refine-box", "0,0,0,1,1,1,1", "--adapt", "1"), "--refine-box: 0,0,0,1,1,1,1, not"),
         (("--cells", "40k", "--edges", "1", "--adapt", "1"), "--edges: 1, not allowed with --adapt 1"),
         (("--cell", "0.1", "--adapt", "1"), "--adapt: 1, goes with --cells"),
         (("--method", "tangent", "--domain", "0,0,0,1,1,1"), "--domain"),
@@ -879,6 +936,8 @@ def test_flow_on_a_mesh(capfd, tmp_path, ending):
         (["--cells", "1000"], "--cells: 1000, not allowed with --mesh"),
         (["--adapt", "1"], "--adapt: 1, not allowed with --mesh"),
         (["--edges", "1"], "--edges: 1, not allowed with --mesh"),
+        (["--refine-box", "0,0,0,1,1,1,1"], "--refine-box: 0,0,0,1,1,1,1, not allowed with --mesh"),
+        (["--refine-parts", "w"], "--refine-parts: w, not allowed with --mesh"),
         (["--domain", "0,0,0,1,1,1"], "--domain"),
         (["--accuracy", "1%"], "--accuracy: 1%, not allowed with --mesh"),
         (["--uncertainty", "mesh"], "--uncertainty: mesh, not allowed with --mesh"),
@@ -950,6 +1009,72 @@ def test_edges_are_finer_by_default_and_as_asked(capfd, tmp_path):
         return json.loads(out)[0]["cells"]
 
     assert cells("--edges", "0") < cells() == cells("--edges", "1") < cells("--edges", "2")
+
+
+def test_parts_and_boxes_are_refined_as_asked(capfd, tmp_path, monkeypatch):
+    """Wall cells of one solid come out half as large, and cells in the boxes no larger than asked."""
+    import numpy as np
+
+    from spaceplane.aero import flow_case
+
+    class MeshedError(Exception):
+        pass
+
+    meshes = []
+
+    def kept(mesh, *_):
+        meshes.append(mesh)
+        raise MeshedError
+
+    monkeypatch.setattr(flow_case, "solve", kept)
+    text = wedge(tmp_path / "w.stl").read_text()
+    facets = text.split("facet normal")[1:]
+    body = tmp_path / "two.stl"
+    fore, aft = ("".join("facet normal" + f for f in half) for half in (facets[:2], facets[2:]))
+    body.write_text(f"solid fore\n{fore}endsolid fore\nsolid aft\n" + aft.replace("endsolid w", "endsolid aft"))
+    boxes = ((1.5, -1.0, 1.0, 3.0, 1.0, 2.0, 0.2), (-1.0, -1.0, -2.0, 0.0, 1.0, -1.0, 0.1))
+    given = [x for box in boxes for x in ("--refine-box", ",".join(map(str, box)))]
+    plain = ["flow", body, "--mach", 2, *FLOW, "--cell", 0.2, "--edges", 0]
+    for options in ((), (*given, "--refine-parts", "fore")):
+        with pytest.raises(MeshedError):
+            run(capfd, *plain, *options)
+    before, after = meshes
+    assert before.part_names == ("body",) and after.part_names == ("fore", "aft")
+    sizes = after.cell_size[after.wall_cell[after.piece_wall]]
+    assert np.allclose(sizes[after.piece_part == 0], 0.1) and np.isclose(sizes[after.piece_part == 1], 0.2).any()
+    assert np.allclose(before.cell_size[before.wall_cell], 0.2)
+    for box in boxes:
+        largest = []
+        for mesh in meshes:
+            inside = ((mesh.cell_cube_center > box[:3]) & (mesh.cell_cube_center < box[3:6])).all(axis=1)
+            largest.append(mesh.cell_size[inside].max())
+        assert largest[1] <= box[6] + 1e-9 < largest[0]
+    line = refused(capfd, *plain, "--refine-parts", "wing", naming="--refine-parts: unknown part 'wing'")
+    assert "the body has fore, aft" in line
+
+
+def test_an_analysis_refines_parts_and_boxes(monkeypatch, capfd, tmp_path):
+    from spaceplane import pipeline
+
+    seen = []
+
+    def seen_only(subject, settings, *_):
+        seen.append(settings)
+        raise InputError("seen")
+
+    monkeypatch.setattr(pipeline, "run", seen_only)
+    options = (
+        "--refine-box",
+        "18,-2,-1,26,2,3,0.15",
+        "--refine-parts",
+        "body_flap, elevon",
+        "--refine-parts",
+        "rudder",
+    )
+    refused(capfd, "analyse", "horus-2b", "--out", tmp_path / "o", *options, naming="seen")
+    (box,) = seen[0].mesh.boxes
+    assert (box.lower, box.upper, box.cell) == ((18, -2, -1), (26, 2, 3), 0.15)
+    assert seen[0].mesh.fine_parts == ("body_flap", "elevon", "rudder") and seen[0].mesh.wall_cell == 0.3
 
 
 def test_interrupt_from_outside_is_one_line_and_130(tmp_path):

@@ -10,7 +10,7 @@ import typer
 
 from spaceplane import __version__
 from spaceplane.commands import analyse, compare, database, export, flow, fly, geometry, modes, report, study, validate
-from spaceplane.commands.arguments import require_places, spread_assignments
+from spaceplane.commands.arguments import naming_options, require_places, spread_assignments
 from spaceplane.errors import InputError
 
 GOOD, NOT_GOOD, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
@@ -26,10 +26,10 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-app.command("analyse", epilog=analyse.EXAMPLE)(analyse.analyse)
+app.command("analyse", epilog=analyse.EXAMPLE)(naming_options(analyse.analyse))
 app.command("geometry", epilog=geometry.EXAMPLE)(geometry.geometry)
-app.command("flow", epilog=flow.EXAMPLE)(flow.flow)
-app.command("database", epilog=database.EXAMPLE)(database.database)
+app.command("flow", epilog=flow.EXAMPLE)(naming_options(flow.flow))
+app.command("database", epilog=database.EXAMPLE)(naming_options(database.database))
 app.command("fly", epilog=fly.EXAMPLE)(fly.fly)
 app.command("modes", epilog=modes.EXAMPLE)(modes.modes)
 app.add_typer(study.app, name="study")

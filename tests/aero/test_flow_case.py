@@ -77,7 +77,7 @@ def test_a_cone_that_pitches_about_its_apex_resists():
 
 def test_increments_of_a_cone_are_listed_by_source(monkeypatch, case):
     """Laminar friction of the 20 deg cone by hand: 2/sqrt(3) times that of a plate of its slant length, plus edges."""
-    monkeypatch.setattr(flow_case, "solve_adapted", lambda *_: case.solution)
+    monkeypatch.setattr(flow_case, "_solved", lambda *_: case.solution)
     increments = IncrementSettings(friction="laminar", base="correlation")
     streams = FreeStreams([3.0], *ANGLES, increments=increments)
     with pytest.raises(InputError, match="friction = 'laminar': needs the altitude"):
@@ -120,7 +120,13 @@ def test_failed_conditions_have_no_values(case):
 
 
 def test_bad_conditions_are_refused_before_meshing(monkeypatch):
-    monkeypatch.setattr(flow_case, "solve_adapted", lambda *_: pytest.fail("meshed"))
+    monkeypatch.setattr(flow_case, "generate", lambda *_: pytest.fail("meshed"))
     for machs, alphas, message in (([0.0], [0.0], "mach"), ([2.0], [math.nan], "alpha"), ([], [0.0], "at least one")):
         with pytest.raises(InputError, match=message):
             run_flow(cone(HALF_ANGLE), FreeStreams(machs, alphas), REFERENCE, MESH, FlowSettings())
+
+
+def test_rates_that_are_no_numbers_are_named():
+    streams = FreeStreams([2.0], rates=(0.0, math.nan, 0.0))
+    with pytest.raises(InputError, match=r"rates: \(0.0, nan, 0.0\), three finite"):
+        streams.conditions(REFERENCE, cone(HALF_ANGLE).points)

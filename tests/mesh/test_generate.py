@@ -205,6 +205,18 @@ def test_refinement_box():
     check_shape(mesh)
 
 
+@pytest.mark.parametrize(
+    ("box", "word"),
+    [
+        (RefinementBox((50.0, 0.0, 0.0), (51.0, 1.0, 1.0), 0.1), "outside the air"),
+        (RefinementBox((-3.0, -3.0, -3.0), (3.0, 3.0, 3.0), 0.01), "cells of 0.01 m .* are .*, at most 6000000"),
+    ],
+)
+def test_boxes_that_no_mesh_can_have(box, word):
+    with pytest.raises(InputError, match=f"boxes: .*{word}"):
+        generate(bodies.sphere(), MeshSettings(wall_cell=0.2, far_field=2.0, boxes=(box,)))
+
+
 def test_fine_parts_have_half_sized_cells():
     left, right = bodies.box(1, 1, 0.3, at=(0, -1.2, 0)), bodies.box(1, 1, 0.3, at=(0, 1.2, 0))
     surface = bodies.from_trimesh(bodies.box(2, 1, 1), left, right, names=("fuselage", "wing_left", "wing_right"))
@@ -214,7 +226,7 @@ def test_fine_parts_have_half_sized_cells():
     assert np.isclose(size[mesh.piece_part == 0], 0.2).mean() > 0.3
     check_body(mesh, surface)
     check_shape(mesh)
-    with pytest.raises(InputError, match="did you mean 'wing_left'"):
+    with pytest.raises(InputError, match="unknown part 'wing_lefd', the body has fuselage, wing_left, wing_right"):
         generate(surface, MeshSettings(fine_parts=("wing_lefd",)))
 
 
@@ -240,6 +252,17 @@ def test_fine_edges_have_half_sized_cells(seed):
         ({"far_field": 0.0}, "far_field"),
         ({"target_cells": 3}, "target_cells"),
         ({"wall_layers": 0}, "wall_layers"),
+        ({"wall_cell": "a"}, "wall_cell: 'a'"),
+        ({"wall_cell": True}, "wall_cell: True"),
+        ({"target_cells": "many"}, "target_cells: 'many'"),
+        ({"far_field": None}, "far_field: None"),
+        ({"boxes": 3}, "boxes: 3"),
+        ({"boxes": ((0, 0, 0, 1, 1, 1, 0.1),)}, "boxes: .*RefinementBox"),
+        ({"boxes": (RefinementBox((0, 0, 0), (1, 1), 0.1),)}, r"boxes: lower \(0, 0, 0\), upper \(1, 1\)"),
+        ({"boxes": (RefinementBox((0, 0, 0), (1, 1, 1), "s"),)}, "boxes: cell 's'"),
+        ({"fine_parts": "wing"}, "fine_parts: 'wing'"),
+        ({"frustums": 3}, "frustums: 3"),
+        ({"domain": 3}, "domain: 3"),
     ],
 )
 def test_bad_settings_name_the_field(settings, word):

@@ -78,6 +78,16 @@ def test_flow_table():
     assert "0.12346" in text and "failed" in text and "–" in text
 
 
+@pytest.mark.parametrize("width", [40, 80, 120, 160])
+def test_flow_table_cuts_nothing_on_any_terminal(width):
+    names = ("CL", "CD", "CY", "Cl", "Cm", "Cn", "CA", "CN")
+    values = {name: -1.02034 - 0.1 * n for n, name in enumerate(names)}
+    record = {"mach": 12.5, "alpha_deg": -30.25, "beta_deg": -10.5, "converged": False, "verdict": "oscillating"}
+    text = printed(print_flow, [record | values | {"coefficient_errors": dict.fromkeys(names, 0.00123)}], width=width)
+    assert "…" not in text and "oscillating" in text and text.count("±0.00123") == len(names)
+    assert all(f"−{-value:.5f}" in text for value in values.values())
+
+
 def test_csv_holds_every_number(tmp_path):
     result = example_result()
     paths = {p.name: list(csv.DictReader(p.open())) for p in write_csv(result, tmp_path)}

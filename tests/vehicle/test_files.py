@@ -62,6 +62,21 @@ def test_corners_apart_by_rounding_are_welded(tmp_path):
     assert len(read_stl(path).points) == 8
 
 
+def test_solids_of_an_ascii_file_are_parts_where_asked_for(tmp_path):
+    """A sliver without area, dropped, does not shift the parts of what follows."""
+    sliver = CUBE[[[0, 0, 1]]]
+    corners = np.concatenate([sliver, CUBE[CUBE_TRIANGLES]])
+    first, second, third = (ascii_stl(corners[k]) for k in (slice(0, 3), slice(3, 5), slice(5, None)))
+    named = first.replace("test", "fore wing") + second.replace("solid test", "solid") + third.replace("test", "tail")
+    (path := tmp_path / "cube.stl").write_text(named)
+    surface = read_stl(path, by_solid=True)
+    assert surface.part_names == ("fore wing", "body", "tail")
+    assert np.bincount(surface.part).tolist() == [2, 2, 8]
+    assert np.allclose(surface.area_vectors[surface.part == 0].sum(axis=0), [-1, 0, 0])
+    assert read_stl(path).part_names == ("body",)
+    assert read_stl(export.write_stl(surface, tmp_path / "b.stl"), by_solid=True).part_names == ("body",)
+
+
 def bad_files() -> dict[str, tuple[bytes, str]]:
     cube = CUBE[CUBE_TRIANGLES]
     one_turned = CUBE_TRIANGLES.copy()

@@ -17,6 +17,7 @@ from spaceplane.flow.settings import FlowSettings
 from spaceplane.flow.solution import ConvergenceRecord, FlowConditions, Solution
 from spaceplane.flow.solve import solve
 from spaceplane.mesh.generate import generate
+from spaceplane.mesh.resolution import require_resolved
 from spaceplane.mesh.settings import MeshSettings
 from spaceplane.mesh.sizing import Sizing
 from spaceplane.progress import Progress, silent
@@ -92,6 +93,7 @@ def solve_vehicle(
     progress: Progress | None = None,
     name: str = "body",
     sizing: Sizing | None = None,
+    resolved: bool = False,
 ) -> SolvedBody:
     """Build, mesh and solve one body.
 
@@ -103,6 +105,7 @@ def solve_vehicle(
         progress: called with (phase, done, total, text).
         name: stands before each phase told to `progress`, with a colon after it.
         sizing: cells wanted smaller than the settings make them.
+        resolved: whether to refuse a mesh on which forces mean nothing, see `require_resolved`.
 
     Raises:
         InputError: a shape that cannot be built, or a mesh or condition that is not allowed.
@@ -118,6 +121,8 @@ def solve_vehicle(
     built = time.perf_counter()
     say("mesh", 0, 1, "")
     mesh = generate(surface, mesh_settings, say, sizing)
+    if resolved:
+        require_resolved(surface, mesh_settings, mesh, sizing is not None)
     meshed = time.perf_counter()
     solution = solve(mesh, conditions, flow_settings, say)
     seconds = {"geometry": built - began, "mesh": meshed - built, "flow": time.perf_counter() - meshed}

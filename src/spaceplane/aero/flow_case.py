@@ -14,14 +14,15 @@ from spaceplane.aero.uncertainty.accuracy import Accuracy, Refined, Trial, at_wa
 from spaceplane.aero.uncertainty.companion import RATIO, Companion, coarser
 from spaceplane.aero.uncertainty.errors import of_coefficients
 from spaceplane.aero.uncertainty.settings import ITERATION, MESH
-from spaceplane.flow.adapt import follower, solve_adapted
+from spaceplane.flow.adapt import adapt_mesh, follower, solve_last
 from spaceplane.flow.compilation import begin
 from spaceplane.flow.settings import FlowSettings
-from spaceplane.flow.solution import Solution
+from spaceplane.flow.solution import FlowConditions, Solution
 from spaceplane.flow.solve import solve
 from spaceplane.mesh.generate import generate
 from spaceplane.mesh.mesh import Mesh
-from spaceplane.mesh.settings import MeshSettings
+from spaceplane.mesh.resolution import require_resolved
+from spaceplane.mesh.settings import MeshSettings, check_passes
 from spaceplane.mesh.sizing import sizes_of
 from spaceplane.plain import finite
 from spaceplane.progress import Progress, silent
@@ -71,14 +72,16 @@ def run_flow(
         progress: passed on to the solver.
         uncertainty: "mesh" solves everything again on a coarser companion mesh, and the records hold
             `coefficient_errors` with the uncertainty by the mesh; "iteration" leaves that out.
-        adapt: passes that adapt the mesh to the flow, see `solve_adapted`; the companion then has cells twice as large
+        adapt: passes that adapt the mesh to the flow, see `adapt_mesh`; the companion then has cells twice as large
             as those of the last mesh everywhere.
 
     Raises:
-        InputError: as `FreeStreams.conditions`, a bad body, or adaptation without a number of cells.
+        InputError: as `FreeStreams.conditions`, a bad body, adaptation without a number of cells, or a mesh so coarse
+            that forces mean nothing, see `require_resolved`.
     """
     conditions = streams.conditions(reference, body.points)
-    case = _told(solve_adapted(body, mesh_settings, conditions, flow_settings, adapt, progress), reference, streams)
+    solution = _solved(body, mesh_settings, conditions, flow_settings, adapt, progress)
+    case = _told(solution, reference, streams)
     if uncertainty != MESH:
         return case
 
@@ -90,6 +93,26 @@ def run_flow(
     twice = sizes_of(case.mesh, RATIO) if adapt else None
     coarse = generate(body, coarser(own, wall_cell), say, twice)
     return _compared(case, _told(solve(coarse, conditions, flow_settings, say), reference, streams), RATIO)
+
+
+def _solved(
+    body: Surface,
+    settings: MeshSettings,
+    conditions: FlowConditions,
+    flow_settings: FlowSettings,
+    adapt: int,
+    progress: Progress | None,
+) -> Solution:
+    """The flow on the mesh of the settings, or on one that `adapt` passes made follow it; not on one too coarse."""
+    begin(flow_settings, conditions)
+    if check_passes("adapt", adapt):
+        adapted = adapt_mesh(body, settings, conditions, flow_settings, adapt, progress)
+        require_resolved(body, settings, adapted.mesh, adapted=True)
+        return solve_last(adapted, conditions, flow_settings, progress)
+    (progress or silent)("mesh", 0, 1, "")
+    mesh = generate(body, settings, progress)
+    require_resolved(body, settings, mesh)
+    return solve(mesh, conditions, flow_settings, progress)
 
 
 def run_to_accuracy(

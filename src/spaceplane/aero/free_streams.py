@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
@@ -58,8 +59,10 @@ class FreeStreams:
                 friction or equilibrium air without air, or both together.
         """
         found = product(list(self.machs), list(self.alphas), list(self.betas))
+        if len(self.rates) != 3 or not np.isfinite(np.asarray(self.rates, float)).all():
+            raise InputError(f"rates: {tuple(self.rates)}, three finite numbers are needed")
         arm = np.linalg.norm(points - np.asarray(reference.moment_center), axis=1).max()
-        share = float(np.linalg.norm(self.rates) * arm / found.mach.min())
+        share = float(math.hypot(*self.rates) * arm / found.mach.min())
         if share > FASTEST_POINT:
             raise InputError(
                 f"rates: a point of the body would move at {share:.2g} of the flight speed, at most {FASTEST_POINT:g}"

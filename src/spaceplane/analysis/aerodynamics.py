@@ -86,7 +86,7 @@ def solve_aerodynamics(
         return replace(found, refined=refined)
     adapted = _adapt(vehicle, settings, plan, progress) if settings.adapt else None
     mesh = settings.mesh if adapted is None else adapted.settings
-    fine = _on_mesh(vehicle, settings, plan, points, mesh, progress, adapted and sizes_of(adapted.mesh))
+    fine = _on_mesh(vehicle, settings, plan, points, mesh, progress, adapted and sizes_of(adapted.mesh), resolved=True)
     if settings.uncertainty != MESH:
         return replace(_with_errors(fine, None, plan), adapted=adapted)
     wall_cell = float(fine.body.solution.mesh.record["wall_cell_m"])
@@ -150,8 +150,10 @@ def _on_mesh(
     mesh: MeshSettings,
     say: Progress,
     sizing: Sizing | None = None,
+    resolved: bool = False,
 ) -> Aerodynamics:
-    body = solve_vehicle(vehicle, settings.deflections, plan.conditions, mesh, settings.flow, say, "base", sizing)
+    flow = settings.flow
+    body = solve_vehicle(vehicle, settings.deflections, plan.conditions, mesh, flow, say, "base", sizing, resolved)
     say("coefficients", 0, 1, "")
     air = Air.of([points[i].ambient for i in plan.point])
     coefficients = integrate_with(body.solution, vehicle.reference, settings.increments, air)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from spaceplane.commands import options
-from spaceplane.commands.arguments import mach_numbers, numbers, writable_file, write_json
+from spaceplane.commands.arguments import mach_numbers, numbers, warn_beyond_verified, writable_file, write_json
 from spaceplane.commands.progress import progress_bar
 from spaceplane.errors import InputError
 from spaceplane.files import writable_folder
@@ -43,6 +43,8 @@ def analyse(
     cell: options.Cell = None,
     cells: options.Cells = None,
     edges: options.Edges = None,
+    refine_box: options.RefineBox = None,
+    refine_parts: options.RefineParts = None,
     adapt: options.Adapt = "0",
     uncertainty: options.Uncertainty = "mesh",
     accuracy: options.AccuracyText = None,
@@ -80,13 +82,16 @@ def analyse(
     increments = options.increment_settings(friction, base, wall_temperature, emissivity, transition_reynolds)
     asked = options.accuracy(accuracy, cell, cells, uncertainty)
     stated = options.uncertainty(uncertainty)
-    if edges is not None and adapt != "0":
-        raise InputError(f"--edges: {edges}, not allowed with --adapt {adapt}: it finds out where to refine")
-    settings = _settings(machs, alpha, deflect, allow_outside_limits, (cell, cells, edges), precision)
+    for option, text in {"--edges": edges, **options.refinement(refine_box, refine_parts)}.items():
+        if text is not None and adapt != "0":
+            raise InputError(f"{option}: {text}, not allowed with --adapt {adapt}: it finds out where to refine")
+    settings = _settings(machs, alpha, deflect, allow_outside_limits, precision)
+    mesh = options.mesh_settings(cell, cells, edges, settings.mesh, refine_box, refine_parts)
     steps = replace(settings.steps, two_step_sizes=True) if two_steps else settings.steps
     settings = replace(
         settings,
-        adapt=options.adapt_passes(adapt, settings.mesh),
+        mesh=mesh,
+        adapt=options.adapt_passes(adapt, mesh),
         form=form,
         vehicle_class=vehicle_class,
         category=category,
@@ -105,6 +110,7 @@ def analyse(
 
     with progress_bar(_bodies(settings)) as tell:
         pipeline.run(subject, settings, folder, tell)
+    warn_beyond_verified(machs)
     result = read_result(folder)
     write_json(result, json_file)
     if str(json_file) != "-":
@@ -126,10 +132,9 @@ def _settings(
     alpha: str | None,
     deflect: list[str] | None,
     allow_outside_limits: bool,
-    sizes: tuple[str | None, str | None, str | None],
     precision: str,
 ) -> AnalyseSettings:
-    """Settings of the options; `sizes` are --cell, --cells and --edges."""
+    """Settings of these options."""
     solver_precision = options.precision(precision)
     alphas = None if alpha is None else numbers("--alpha", alpha, "degrees")
     if alphas is not None and len(alphas) not in (1, len(machs)):
@@ -142,6 +147,5 @@ def _settings(
         mach=tuple(machs),
         alpha_deg=None if alphas is None else tuple(alphas * len(machs) if len(alphas) == 1 else alphas),
         deflections=options.load_deflections(deflect, allow_outside_limits, default.deflections.to_degrees()),
-        mesh=options.mesh_settings(*sizes, default.mesh),
         flow=replace(default.flow, precision=solver_precision),
     )

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import functools
 import math
 import os
+import re
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from itertools import pairwise
 from pathlib import Path
 
@@ -13,6 +15,32 @@ from spaceplane.errors import InputError
 from spaceplane.files import json_text, writable_folder, write_text
 
 ASSIGNING = ("--set", "--deflect")
+OPTION_OF = {
+    "accuracy": "--accuracy",
+    "adapt": "--adapt",
+    "altitude_m": "--altitude",
+    "base": "--base",
+    "boxes": "--refine-box",
+    "category": "--category",
+    "domain": "--domain",
+    "emissivity": "--emissivity",
+    "fine_parts": "--refine-parts",
+    "form": "--form",
+    "friction": "--friction",
+    "gas": "--gas",
+    "mach": "--mach",
+    "max_cells": "--cells",
+    "rates": "--rates",
+    "sizing": "--refine-box",
+    "target_cells": "--cells",
+    "transition_reynolds": "--transition-reynolds",
+    "vehicle_class": "--class",
+    "wall_cell": "--cell",
+    "wall_temperature_K": "--wall-temperature",
+}
+"""Options of `flow`, `analyse` and `database` by the settings that they become."""
+VERIFIED_MACH = 25.0
+"""Up to which the flow solver is compared with exact solutions (docs, validation)."""
 PLACES = ("--out", "--json", "--vtu", "--vtp", "--store", "--mesh")
 
 
@@ -43,6 +71,42 @@ def require_places(arguments: Sequence[str]) -> None:
     for option, value in pairwise(arguments):
         if option in PLACES and not value.strip():
             raise InputError(f"{option}: empty, a name is needed")
+
+
+def naming_options(command: Callable[..., int]) -> Callable[..., int]:
+    """A command whose errors name the option where a setting was refused, see `in_options`.
+
+    Raises:
+        InputError: as the command.
+    """
+
+    @functools.wraps(command)
+    def run(*given: object, **named: object) -> int:
+        try:
+            return command(*given, **named)
+        except InputError as error:
+            raise InputError(in_options(str(error))) from error
+
+    return run
+
+
+def in_options(message: str) -> str:
+    """The message with settings replaced by options: `--cells: 10, ...` for `target_cells: 10, ...`."""
+    found = re.match(r"(\w+)(?: = (.+?))?: ", message)
+    if found is None or found[1] not in OPTION_OF:
+        return message
+    start = f"{OPTION_OF[found[1]]}: " + (f"{found[2]}, " if found[2] else "")
+    others = "|".join(name for name in OPTION_OF if "_" in name)
+    return start + re.sub(rf"\b({others})\b", lambda name: OPTION_OF[name[0]], message[found.end() :])
+
+
+def warn_beyond_verified(machs: Sequence[float], option: str = "--mach") -> None:
+    """Say on stderr that nothing has been checked, where a Mach number lies beyond `VERIFIED_MACH`."""
+    if max(machs, default=0.0) > VERIFIED_MACH:
+        print(
+            f"warning: {option}: {max(machs):g}, beyond Mach {VERIFIED_MACH:g} nothing has been checked",
+            file=sys.stderr,
+        )
 
 
 def number(option: str, text: str, unit: str = "") -> float:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from spaceplane.commands import options
-from spaceplane.commands.arguments import number, numbers, writable_file, write_json
+from spaceplane.commands.arguments import number, numbers, warn_beyond_verified, writable_file, write_json
 from spaceplane.commands.progress import progress_bar
 from spaceplane.errors import InputError, unknown_name
 from spaceplane.files import writable_folder
@@ -105,6 +105,8 @@ def database(
     writable_folder(folder, "--out")
     writable_file(json_file, "--json")
     found = _computed(subject, settings, store or folder / "store.sqlite", workers)
+    if tier == "euler":
+        warn_beyond_verified(settings.machs)
     from spaceplane.report import database as report
 
     files = report.write(found, folder)

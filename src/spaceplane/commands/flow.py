@@ -19,6 +19,7 @@ from spaceplane.commands.arguments import (
     number,
     numbers,
     positive,
+    warn_beyond_verified,
     writable_file,
     write_json,
 )
@@ -67,6 +68,8 @@ def flow(
     cell: options.Cell = None,
     cells: options.Cells = None,
     edges: options.Edges = None,
+    refine_box: options.RefineBox = None,
+    refine_parts: options.RefineParts = None,
     adapt: options.Adapt = "0",
     domain: opt.Domain = None,
     mesh_file: opt.MeshFile = None,
@@ -105,7 +108,8 @@ def flow(
     ambient = _ambient(altitude, friction, any(turning), gas)
     roles = {"wall": wall, "far": far, "symmetry": symmetry}
     mesh_options = {"--cell": cell, "--cells": cells, "--domain": domain, "--accuracy": accuracy}
-    mesh_options["--edges"] = edges
+    refining = {"--edges": edges, **options.refinement(refine_box, refine_parts)}
+    mesh_options |= refining
     mesh_options["--uncertainty"] = uncertainty if uncertainty == "mesh" else None
     mesh_options["--adapt"] = None if adapt == "0" else adapt
     if mesh_file is None:
@@ -134,11 +138,11 @@ def flow(
     corners = None if domain is None else numbers("--domain", domain, "m", 6)
     corners = corners and (tuple(corners[:3]), tuple(corners[3:]))
     default = MeshSettings(target_cells=200_000, domain=corners, fine_edges=True)
-    mesh = options.mesh_settings(cell, cells, edges, default)
+    mesh = options.mesh_settings(cell, cells, edges, default, refine_box, refine_parts)
     passes = options.adapt_passes(adapt, mesh)
     if passes:
         _refuse_options({"--accuracy": accuracy}, f"not allowed with --adapt {passes}: it refines the whole mesh")
-        _refuse_options({"--edges": edges}, f"not allowed with --adapt {passes}: it finds out where to refine")
+        _refuse_options(refining, f"not allowed with --adapt {passes}: it finds out where to refine")
     # The numerical stack is loaded after all that can be refused without it.
     from spaceplane.aero.free_streams import FreeStreams
     from spaceplane.flow.settings import FlowSettings
@@ -150,7 +154,7 @@ def flow(
         return _on_mesh(mesh_file, chosen, streams, reference, settings, files)
     from spaceplane.vehicle.stl import read_stl
 
-    args = read_stl(body), streams, reference, mesh, settings
+    args = read_stl(body, by_solid=bool(refine_parts)), streams, reference, mesh, settings
     if asked is not None:
         return _to_accuracy(asked, cells, args, files)
     return _on_body(args, stated, passes, files)
@@ -215,6 +219,7 @@ def _done(case: FlowCase, surface: Surface, imported: Imported | None, files: Fi
             export.write_vtp(surface, case.solution, partial)
     for warning in case.mesh.record.get("warnings") or ():
         typer.echo(f"warning: {warning}", err=True)
+    warn_beyond_verified([r["mach"] for r in case.records])
     _print(case.records, files.json)
     bad = [r for r in case.records if not r["converged"]]
     for r in bad:

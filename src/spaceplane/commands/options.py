@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from spaceplane.commands.arguments import assignments, count, fraction, number, positive
+from spaceplane.commands.arguments import assignments, count, fraction, list_of_names, number, numbers, positive
 from spaceplane.errors import InputError, unknown_name
 
 if TYPE_CHECKING:
     from spaceplane.aero.increments.settings import IncrementSettings
-    from spaceplane.mesh.settings import MeshSettings
+    from spaceplane.mesh.settings import MeshSettings, RefinementBox
     from spaceplane.vehicle.controls import ControlDeflections
     from spaceplane.vehicle.presets import Vehicle
 
@@ -45,6 +46,23 @@ Edges = Annotated[
         metavar="N[,CELLS]",
         help="Halve cells N times (0 to 5) towards sharp edges, by default 1 (flow) or 3 (analyse); with N of 2 or "
         "more so that CELLS of them fit into the thickness of a plate with square edges.",
+    ),
+]
+RefineBox = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--refine-box",
+        metavar="X0,Y0,Z0,X1,Y1,Z1,CELL",
+        help="Cells no larger than CELL between a lower and an upper corner, metres; may be given several times.",
+    ),
+]
+RefineParts = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--refine-parts",
+        metavar="NAME[,NAME...]",
+        help="Wall cells half as large on these parts: of HORUS-2B nose, fuselage, wing, winglet, elevon, rudder, "
+        "body_flap; of an ASCII STL its solids.",
     ),
 ]
 Adapt = Annotated[
@@ -163,21 +181,53 @@ def load_deflections(
     return ControlDeflections.from_degrees((base or {}) | given, allow_outside_limits)
 
 
-def mesh_settings(cell: str | None, cells: str | None, edges: str | None, default: MeshSettings) -> MeshSettings:
-    """Mesh settings with the wall cell or the number of cells asked for, and finer cells at edges.
+def mesh_settings(
+    cell: str | None,
+    cells: str | None,
+    edges: str | None,
+    default: MeshSettings,
+    refine_box: Sequence[str] | None = None,
+    refine_parts: Sequence[str] | None = None,
+) -> MeshSettings:
+    """Mesh settings with the wall cell or the number of cells asked for, and finer cells at edges, in boxes, on parts.
 
     Raises:
-        InputError: both are given, or one has a value that is not allowed.
+        InputError: both a cell and a number of cells, or a value that is not allowed.
     """
     if cell is not None and cells is not None:
         raise InputError("--cell and --cells: give one of them, not both")
     if edges is not None:
         default = _with_edges(edges, default)
+    if refine_box:
+        default = replace(default, boxes=default.boxes + tuple(_box(text) for text in refine_box))
+    if refine_parts:
+        parts = tuple(name for text in refine_parts for name in list_of_names("--refine-parts", text) or ())
+        default = replace(default, fine_parts=default.fine_parts + parts)
     if cell is not None:
         return replace(default, wall_cell=positive("--cell", cell, "m"), target_cells=None)
     if cells is not None:
         return replace(default, target_cells=count("--cells", cells, "cells"))
     return default
+
+
+def _box(text: str) -> RefinementBox:
+    """The box that `--refine-box` asks for."""
+    from spaceplane.mesh.settings import RefinementBox
+
+    *corners, cell = numbers("--refine-box", text, "m", 7)
+    if cell <= 0:
+        raise InputError(f"--refine-box: {text.strip()!r}, CELL must be above 0 m")
+    if any(high <= low for low, high in zip(corners[:3], corners[3:], strict=True)):
+        raise InputError(f"--refine-box: {text.strip()!r}, X1,Y1,Z1 must lie above X0,Y0,Z0")
+    return RefinementBox(tuple(corners[:3]), tuple(corners[3:]), cell)
+
+
+def refinement(refine_box: Sequence[str] | None, refine_parts: Sequence[str] | None) -> dict[str, str | None]:
+    """What was given of `--refine-box` and `--refine-parts` as text, by option; None for nothing."""
+    return {
+        option: " ".join(texts) if texts else None
+        for option, texts in (("--refine-box", refine_box), ("--refine-parts", refine_parts))
+    }
 
 
 def _with_edges(text: str, settings: MeshSettings) -> MeshSettings:

@@ -98,12 +98,26 @@ def refined(grid: Grid, finer: int) -> Grid:
 
 
 def boxes_in_cells(settings: MeshSettings, grid: Grid) -> list:
-    """Refinement boxes as (level, lower, upper) in wall cells of the domain."""
+    """Refinement boxes as (level, lower, upper) in wall cells of the domain.
+
+    Raises:
+        InputError: a box outside the domain, or with more cells than are allowed altogether.
+    """
     found = []
     for box in settings.boxes:
         level = max(0, math.floor(math.log2(box.cell / grid.cell) + 1e-9))
         low, high = np.array(box.lower, float), np.array(box.upper, float)
         if grid.half:
             low[1], high[1] = 0.0, max(abs(low[1]), abs(high[1]))
-        found.append((level, (low - grid.corner) / grid.cell, (high - grid.corner) / grid.cell))
+        low, high = (low - grid.corner) / grid.cell, (high - grid.corner) / grid.cell
+        inside = np.minimum(high, grid.size * 2**grid.levels) - np.maximum(low, 0.0)
+        if (inside <= 0.0).any():
+            raise InputError(f"boxes: {box.lower} to {box.upper} m lies outside the air that is meshed")
+        cells = float(np.prod(inside / 2**level))
+        if cells > settings.max_cells:
+            raise InputError(
+                f"boxes: cells of {box.cell:g} m from {box.lower} to {box.upper} m are {cells:.3g}, "
+                f"at most {settings.max_cells} allowed"
+            )
+        found.append((level, low, high))
     return found

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from numbers import Real
+from typing import Any
 
 from spaceplane.errors import InputError
 from spaceplane.mesh.frustum import RefinementFrustum
@@ -28,6 +30,19 @@ MOST_EDGE_LEVELS = 4
 
 MOST_EDGE_CELLS = 16.0
 """Cells that may be asked for across the thickness of a thin wall."""
+
+
+def _finite(value: Any) -> bool:
+    """Whether a value is a finite number."""
+    return isinstance(value, Real) and not isinstance(value, bool) and math.isfinite(value)
+
+
+def _three(value: Any) -> bool:
+    """Whether a value is three finite numbers."""
+    try:
+        return len(value) == 3 and all(_finite(x) for x in value)
+    except TypeError:
+        return False
 
 
 @dataclass(frozen=True)
@@ -104,11 +119,15 @@ class MeshSettings:
         Raises:
             InputError: naming the field, its value and what is allowed.
         """
-        if not (math.isfinite(self.wall_cell) and self.wall_cell > 0.0):
+        for name in ("wall_cell", "far_field", "wall_layers", "growth_layers", "edge_levels", "edge_cells"):
+            if not _finite(getattr(self, name)):
+                raise InputError(f"{name}: {getattr(self, name)!r}, must be a finite number")
+        if not self.wall_cell > 0.0:
             raise InputError(f"wall_cell: {self.wall_cell} m, must be a finite length above 0")
-        if self.target_cells is not None and not 1000 <= self.target_cells <= self.max_cells:
-            raise InputError(f"target_cells: {self.target_cells}, allowed 1000 to {self.max_cells}")
-        if not (math.isfinite(self.far_field) and self.far_field >= 0.25):
+        target = self.target_cells
+        if target is not None and not (_finite(target) and 1000 <= target <= self.max_cells):
+            raise InputError(f"target_cells: {target!r}, allowed 1000 to {self.max_cells}")
+        if not self.far_field >= 0.25:
             raise InputError(f"far_field: {self.far_field} body lengths, must be a finite number of at least 0.25")
         for name in ("wall_layers", "growth_layers"):
             if getattr(self, name) < 1:
@@ -119,12 +138,28 @@ class MeshSettings:
             raise InputError(f"edge_cells: {self.edge_cells}, allowed 0 to {MOST_EDGE_CELLS:g}")
         if self.edge_cells and not self.edge_levels:
             raise InputError(f"edge_cells: {self.edge_cells:g}, goes with edge_levels of at least 1, which reach them")
-        if not 0.0 <= self.merge_fraction <= 0.9:
-            raise InputError(f"merge_fraction: {self.merge_fraction}, allowed 0 to 0.9")
+        if not (_finite(self.merge_fraction) and 0.0 <= self.merge_fraction <= 0.9):
+            raise InputError(f"merge_fraction: {self.merge_fraction!r}, allowed 0 to 0.9")
+        self._check_regions()
+
+    def _check_regions(self) -> None:
+        """Refuse a domain, parts, boxes and frustums that are none."""
+        if self.domain is not None and not (
+            isinstance(self.domain, tuple | list) and len(self.domain) == 2 and all(_three(c) for c in self.domain)
+        ):
+            raise InputError(f"domain: {self.domain!r}, lower and upper corner, three numbers each, are needed")
         if self.domain is not None and not all(low < high for low, high in zip(*self.domain, strict=True)):
             raise InputError(f"domain: {self.domain} m, the upper corner must lie above the lower one")
+        for name, kind in (("fine_parts", str), ("boxes", RefinementBox), ("frustums", RefinementFrustum)):
+            value = getattr(self, name)
+            if not (isinstance(value, tuple | list) and all(isinstance(one, kind) for one in value)):
+                raise InputError(f"{name}: {value!r}, a tuple of {kind.__name__} is needed")
         for box in self.boxes:
-            if not (math.isfinite(box.cell) and box.cell > 0.0):
-                raise InputError(f"boxes: cell {box.cell} m, must be a finite length above 0")
-            if any(u <= low or not math.isfinite(u - low) for low, u in zip(box.lower, box.upper, strict=True)):
+            if not (_finite(box.cell) and box.cell > 0.0):
+                raise InputError(f"boxes: cell {box.cell!r} m, must be a finite length above 0")
+            if not (_three(box.lower) and _three(box.upper)):
+                raise InputError(
+                    f"boxes: lower {box.lower!r}, upper {box.upper!r}; three finite numbers each are needed"
+                )
+            if any(u <= low for low, u in zip(box.lower, box.upper, strict=True)):
                 raise InputError(f"boxes: lower {box.lower}, upper {box.upper}; upper must lie above lower")

@@ -10,7 +10,7 @@ import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
-from spaceplane.errors import InputError, unknown_name
+from spaceplane.errors import InputError
 from spaceplane.mesh.assembly import Assembly
 from spaceplane.mesh.cutcells import CutCells
 from spaceplane.mesh.octree import Window
@@ -31,7 +31,7 @@ def fine_parts(names: tuple[str, ...], settings: MeshSettings) -> np.ndarray:
     for wanted in settings.fine_parts:
         found = [n for n, name in enumerate(names) if name == wanted or name.startswith(wanted + "_")]
         if not found:
-            raise InputError("fine_parts: " + unknown_name("part", wanted, names))
+            raise InputError(f"fine_parts: unknown part {wanted!r}, the body has {', '.join(names)}")
         fine[found] = True
     return fine
 

@@ -33,6 +33,8 @@ DERIVATIVE_ROWS = (
     *("CL_alpha", "CD_alpha", "Cm_alpha", "CY_beta", "Cl_beta", "Cn_beta"),
     *("CL_M", "CD_M", "Cm_M", "Cl_p", "Cm_q", "Cn_r"),
 )
+WIDEST = 1000
+"""Characters that the table of a flow may be wide."""
 SIGN_COLOURS = {"stable": "green", "unstable": "red", "undecided": "yellow", "": ""}
 
 
@@ -251,7 +253,7 @@ def percent(share: float) -> str:
 
 
 def print_flow(records: Iterable[dict], console: Console | None = None) -> None:
-    """Print the coefficients of each condition of a `spaceplane flow` run."""
+    """Print the coefficients of each condition of a `spaceplane flow` run, whole: a narrow terminal wraps the lines."""
     console = console or _console()
     table = Table(box=box.SIMPLE_HEAD, header_style="bold")
     names = ("CL", "CD", "CY", "Cl", "Cm", "Cn", "CA", "CN")
@@ -265,6 +267,8 @@ def print_flow(records: Iterable[dict], console: Console | None = None) -> None:
         errors = r.get("coefficient_errors") or {}
         if errors:
             table.add_row("", "", "", *(f"±{fixed(errors.get(name), 5)}" for name in names), "", style="dim")
+    needed = console.measure(table, options=console.options.update(max_width=WIDEST)).maximum
+    console.width = max(console.width, needed)
     console.print(table)
 
 

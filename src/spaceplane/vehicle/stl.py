@@ -16,8 +16,8 @@ BODY = "body"
 WELD_TOLERANCE = 1e-6  # of the body's size; STL stores 32-bit floats, good to 1e-7
 
 
-def read_stl(path: str | Path, scale: float = 1.0) -> Surface:
-    """Read a binary or ASCII STL file as one closed body with the single part `body`.
+def read_stl(path: str | Path, scale: float = 1.0, by_solid: bool = False) -> Surface:
+    """Read a binary or ASCII STL file as one closed body with the single part `body`, or one part for each solid.
 
     STL has no unit: coordinates are taken as metres times `scale` (0.001 for a file in millimetres), in axes x aft,
     y right, z up. Equal corners are welded; triangles without area after that are dropped; a body that is inside out
@@ -26,6 +26,7 @@ def read_stl(path: str | Path, scale: float = 1.0) -> Surface:
     Args:
         path: the file.
         scale: metres per unit of the file.
+        by_solid: make the solids of an ASCII file parts by their names; those without one are `body`.
 
     Returns:
         Closed, consistently oriented surface with outward normals; several separate closed pieces are accepted.
@@ -48,11 +49,24 @@ def read_stl(path: str | Path, scale: float = 1.0) -> Surface:
         raise InputError(f"STL file '{path}': holds no triangles")
     if not np.isfinite(corners).all():
         raise InputError(f"STL file '{path}': coordinates must be finite numbers")
-    points, triangles = weld(corners)
+    points, triangles, kept = weld(corners)
     if not len(triangles):
         raise InputError(f"STL file '{path}': all triangles are without area")
     _require_closed(path, points, triangles)
-    return _outward(path, points, triangles)
+    names, part = _solids(data, len(corners)) if by_solid else ((BODY,), np.zeros(len(corners), np.int32))
+    return _outward(path, Surface(points, triangles, part[kept], names))
+
+
+def _solids(data: bytes, count: int) -> tuple[tuple[str, ...], np.ndarray]:
+    """Names of an ASCII file's solids, and the one that each of its `count` facets is of."""
+    _, *rest = re.split(rb"^[ \t]*solid\b[ \t]*([^\r\n]*)", data, flags=re.IGNORECASE | re.MULTILINE)
+    facets = [len(re.findall(rb"endfacet", text, flags=re.IGNORECASE)) for text in rest[1::2]]
+    if sum(facets) != count:  # binary
+        return (BODY,), np.zeros(count, np.int32)
+    of_solid = [name.decode("utf-8", "replace").strip() or BODY for name in rest[::2]]
+    names = tuple(dict.fromkeys(name for name, n in zip(of_solid, facets, strict=True) if n))
+    of_facet = [names.index(name) for name, n in zip(of_solid, facets, strict=True) for _ in range(n)]
+    return names, np.array(of_facet, np.int32)
 
 
 def _corners(path: Path, data: bytes) -> np.ndarray:
@@ -82,14 +96,14 @@ def _ascii_corners(path: Path, data: bytes) -> np.ndarray:
         raise InputError(f"STL file '{path}': damaged, a coordinate is not a number ({err})") from err
 
 
-def weld(corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def weld(corners: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Merge corners closer than `WELD_TOLERANCE` times the body's size and drop triangles that lose their area by it.
 
     Args:
         corners: [triangle, corner, xyz], m.
 
     Returns:
-        points [vertex, xyz] and triangles [triangle, 3].
+        points [vertex, xyz], triangles [triangle, 3], and [triangle of `corners`] bool, which were kept.
     """
     flat = corners.reshape(-1, 3)
     points, index = np.unique(flat, axis=0, return_inverse=True)
@@ -110,7 +124,7 @@ def weld(corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     t = triangles
     keep = (t[:, 0] != t[:, 1]) & (t[:, 1] != t[:, 2]) & (t[:, 2] != t[:, 0])
     used, compact = np.unique(t[keep], return_inverse=True)
-    return points[used], compact.reshape(-1, 3).astype(np.int64)
+    return points[used], compact.reshape(-1, 3).astype(np.int64), keep
 
 
 def _require_closed(path: Path, points: np.ndarray, triangles: np.ndarray) -> None:
@@ -138,11 +152,11 @@ def _require_closed(path: Path, points: np.ndarray, triangles: np.ndarray) -> No
         )
 
 
-def _outward(path: Path, points: np.ndarray, triangles: np.ndarray) -> Surface:
-    surface = Surface(points, triangles, np.zeros(len(triangles), dtype=np.int32), (BODY,))
-    size = float(np.ptp(points, axis=0).max())
+def _outward(path: Path, surface: Surface) -> Surface:
+    size = float(np.ptp(surface.points, axis=0).max())
     if abs(surface.volume) < 1e-12 * size**3:
         raise InputError(f"STL file '{path}': encloses no volume")
     if surface.volume < 0:
-        surface = Surface(points, np.ascontiguousarray(triangles[:, ::-1]), surface.part, surface.part_names)
+        turned = np.ascontiguousarray(surface.triangles[:, ::-1])
+        surface = Surface(surface.points, turned, surface.part, surface.part_names)
     return surface

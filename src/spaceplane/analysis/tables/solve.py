@@ -169,7 +169,14 @@ def solve_block(vehicle: Vehicle, settings: TableSettings, block: Block, progres
         found = local_inclination(body, made.conditions, vehicle.reference, method(settings.method))
     else:
         solved = solve_vehicle(
-            vehicle, block.deflections, made.conditions, settings.mesh, settings.flow, progress, block.label
+            vehicle,
+            block.deflections,
+            made.conditions,
+            settings.mesh,
+            settings.flow,
+            progress,
+            block.label,
+            resolved=True,
         )
         air = Air.of([nodes[i].ambient for i in made.point]) if settings.needs_air else None
         found = integrate_with(solved.solution, vehicle.reference, settings.increments, air)
