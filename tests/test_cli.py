@@ -827,6 +827,7 @@ def test_a_wall_thinner_than_two_cells_is_a_warning_with_the_place(capfd, tmp_pa
     assert set(keys.split()) | {"CA_forebody", "CA_base", "Cp_max", "Cp_min"} <= set(rows[0])
     assert rows[1]["CL"] > 0.05 > abs(rows[0]["CL"])
     assert all(r["converged"] for r in rows) and out.count("converged") == 4
+    assert all(r["coefficient_errors"]["CL"] > 0.0 for r in rows) and out.count("±") == 8 * len(rows)
     import pyvista
 
     assert pyvista.read(tmp_path / "w.vtp").n_cells > 0
@@ -839,6 +840,10 @@ def test_residuals_fall_as_far_as_asked(capfd, tmp_path):
     code, _, err = run(capfd, "flow", body, "--mach", "2,3", "--alpha", 4, *FLOW, *deep)
     assert code == 0, err
     assert all(r["converged"] and r["residual_drop"] >= 6 for r in json.loads(record.read_text()))
+    single = ("--cell", 0.2, "--decades", 8, "--uncertainty", "iteration", "--json", record)
+    code, _, err = run(capfd, "flow", body, "--mach", 2, "--alpha", 4, *FLOW, *single)
+    assert code == 1 and "decades: 8 NOT reached by 1 of 1" in err and "--precision fp64" in err
+    assert json.loads(record.read_text())[0]["converged"]
 
 
 def test_local_inclination_from_the_command_line(capfd, tmp_path):

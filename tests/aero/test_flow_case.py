@@ -25,6 +25,7 @@ KEYS = {
     "mach", "alpha_deg", "beta_deg", "p_hat", "q_hat", "r_hat",
     "CL", "CD", "CY", "Cl", "Cm", "Cn", "CA", "CN", "CA_forebody", "CA_base",
     "Cp_max", "Cp_min", "converged", "verdict", "residual_drop", "iterations", "seconds", "cells", "reason",
+    "coefficient_errors", "coefficient_errors_by_source",
 }  # fmt: skip
 HALF_ANGLE = math.radians(20.0)
 REFERENCE = ReferenceLengths(math.pi * math.tan(HALF_ANGLE) ** 2, 1.0, 1.0, (0.0, 0.0, 0.0))
@@ -43,6 +44,8 @@ def test_records_have_the_documented_keys_for_every_combination(case):
     for record in case.records:
         assert set(record) == KEYS
         assert record["converged"] and record["verdict"] == "converged"
+        assert set(record["coefficient_errors_by_source"]) == {"iteration"}
+        assert 0.0 <= record["coefficient_errors"]["CA"] < 1e-3 * record["CA"]
         assert record["cells"] == case.mesh.cells
         assert record["CA"] == pytest.approx(record["CA_forebody"] + record["CA_base"])
     json.loads(json.dumps(case.records, allow_nan=False))

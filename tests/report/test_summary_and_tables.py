@@ -83,7 +83,9 @@ def test_flow_table_cuts_nothing_on_any_terminal(width):
     names = ("CL", "CD", "CY", "Cl", "Cm", "Cn", "CA", "CN")
     values = {name: -1.02034 - 0.1 * n for n, name in enumerate(names)}
     record = {"mach": 12.5, "alpha_deg": -30.25, "beta_deg": -10.5, "converged": False, "verdict": "oscillating"}
-    text = printed(print_flow, [record | values | {"coefficient_errors": dict.fromkeys(names, 0.00123)}], width=width)
+    errors = dict.fromkeys(names, 0.00123)
+    stated = {"coefficient_errors": errors, "coefficient_errors_by_source": {"mesh": errors}}
+    text = printed(print_flow, [record | values | stated], width=width)
     assert "…" not in text and "oscillating" in text and text.count("±0.00123") == len(names)
     assert all(f"−{-value:.5f}" in text for value in values.values())
 

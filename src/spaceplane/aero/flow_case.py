@@ -70,8 +70,8 @@ def run_flow(
         mesh_settings: how to mesh.
         flow_settings: how to solve.
         progress: passed on to the solver.
-        uncertainty: "mesh" solves everything again on a coarser companion mesh, and the records hold
-            `coefficient_errors` with the uncertainty by the mesh; "iteration" leaves that out.
+        uncertainty: "mesh" solves everything again on a coarser companion mesh, and `coefficient_errors` of the records
+            hold the uncertainty by the mesh; "iteration" leaves that out.
         adapt: passes that adapt the mesh to the flow, see `adapt_mesh`; the companion then has cells twice as large
             as those of the last mesh everywhere.
 
@@ -190,8 +190,9 @@ def run_on_mesh(
 
 
 def _told(solution: Solution, reference: Reference, streams: FreeStreams) -> FlowCase:
-    """The case of this flow, without errors of the mesh."""
-    coefficients = integrate_with(solution, reference, streams.increments, streams.air())
+    """The case of this flow, with errors of the iteration alone."""
+    found = integrate_with(solution, reference, streams.increments, streams.air())
+    coefficients = of_coefficients(found, None, RATIO)
     return FlowCase(records(solution, coefficients), coefficients, solution.mesh, solution)
 
 

@@ -21,7 +21,7 @@ def records(solution: Solution, coefficients: xr.Dataset) -> list[dict]:
     verdict, residual_drop, iterations, seconds, cells, reason. `seconds` is the wall time of the whole ensemble
     divided by its conditions. Values of a failed condition are None. With viscous increments, `by_source` holds what
     "inviscid", "friction" and "base" add to the coefficients. With errors, `coefficient_errors` and
-    `coefficient_errors_by_source` as of `error_record`.
+    `coefficient_errors_by_source` as of `error_record`; of what oscillates, "iteration" is the spread about the mean.
     """
     totals = coefficients.sel(part=TOTAL)
     seconds = total_seconds(solution) / max(len(solution.conditions), 1)

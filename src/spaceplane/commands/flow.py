@@ -96,7 +96,8 @@ def flow(
     With a --method other than euler: local inclination, without a mesh.
     Skin friction and base pressure are added if asked for.
 
-    Exit code 0 when every condition converged (and the accuracy asked for was reached), 1 when not, 2 for bad input.
+    Exit code 0 when every condition converged (and the accuracy and decades asked for were reached), 1 when not, 2 for
+    bad input.
     """
     grid = mach_numbers(mach), angles("--alpha", alpha), angles("--beta", beta)
     turning = numbers("--rates", rates, "rad/s", 3)
@@ -117,7 +118,7 @@ def flow(
     else:
         _check_mesh_file(mesh_file, {"BODY.stl": body, **mesh_options}, method)
     asked = options.accuracy(accuracy, cell, cells, uncertainty)
-    stated = options.uncertainty("iteration" if uncertainty is None else uncertainty)
+    stated = options.uncertainty("mesh" if uncertainty is None else uncertainty)
     chosen = {role: list_of_names(f"--{role}", text) for role, text in roles.items()}
     files = _files(json_file, vtu, vtp)
     from spaceplane.vehicle.properties import ReferenceLengths
@@ -167,7 +168,7 @@ def _on_body(args: tuple, uncertainty: str, passes: int, files: Files) -> int:
     with progress_bar((2 if uncertainty == "mesh" else 1) + passes) as tell:
         tell("mesh", 0, 1, "")
         case = run_flow(*args, tell, uncertainty, passes)
-    return _done(case, args[0], None, files)
+    return _done(case, args[0], None, args[-1], files)
 
 
 def _on_mesh(
@@ -186,7 +187,7 @@ def _on_mesh(
     typer.echo(_roles(imported), err=True)
     with progress_bar() as tell:
         case = run_on_mesh(imported.mesh, streams, reference, settings, tell)
-    return _done(case, imported.surface, imported, files)
+    return _done(case, imported.surface, imported, settings, files)
 
 
 def _to_accuracy(asked: float, cells: str | None, args: tuple, files: Files) -> int:
@@ -202,12 +203,12 @@ def _to_accuracy(asked: float, cells: str | None, args: tuple, files: Files) -> 
 
     with progress_bar(LIKELY_MESHES) as tell:
         case, found = run_to_accuracy(*args, wanted, tell, say)
-    code = _done(case, args[0], None, files)
+    code = _done(case, args[0], None, args[-1], files)
     typer.echo(accuracy_line(wanted, found), err=True)
     return code if found.met else 1
 
 
-def _done(case: FlowCase, surface: Surface, imported: Imported | None, files: Files) -> int:
+def _done(case: FlowCase, surface: Surface, imported: Imported | None, settings: FlowSettings, files: Files) -> int:
     """Write the flow and the records, print them with what is wrong, and return the exit code."""
     from spaceplane.flow import export
 
@@ -225,7 +226,20 @@ def _done(case: FlowCase, surface: Surface, imported: Imported | None, files: Fi
     for r in bad:
         where = f"Mach {r['mach']:g}, alpha {r['alpha_deg']:g} deg, beta {r['beta_deg']:g} deg"
         typer.echo(f"not good: {where}: {r['verdict']}: {r['reason']}", err=True)
-    return 1 if bad else 0
+    return 1 if _short_of(case, settings) or bad else 0
+
+
+def _short_of(case: FlowCase, settings: FlowSettings) -> bool:
+    """Whether residuals of good conditions fell less than decades were asked for beyond the usual; tells how many."""
+    asked = settings.residual_drop
+    short = [r["residual_drop"] for r in case.records if r["converged"] and r["residual_drop"] < asked]
+    if asked <= type(settings)().residual_drop or not short:
+        return False
+    hint = "; single precision ends at 4 to 5: --precision fp64" if settings.precision == "single" else ""
+    typer.echo(
+        f"decades: {asked:g} NOT reached by {len(short)} of {len(case.records)}, least {min(short):.1f}{hint}", err=True
+    )
+    return True
 
 
 def _print(records: list[dict], json_file: Path | None) -> None:

@@ -265,7 +265,7 @@ def print_flow(records: Iterable[dict], console: Console | None = None) -> None:
         where = [number(r["mach"], 3), fixed(r["alpha_deg"], 2), fixed(r["beta_deg"], 2)]
         table.add_row(*where, *values, Text(r.get("verdict") or "", style=style))
         errors = r.get("coefficient_errors") or {}
-        if errors:
+        if "mesh" in (r.get("coefficient_errors_by_source") or {}):
             table.add_row("", "", "", *(f"±{fixed(errors.get(name), 5)}" for name in names), "", style="dim")
     needed = console.measure(table, options=console.options.update(max_width=WIDEST)).maximum
     console.width = max(console.width, needed)
