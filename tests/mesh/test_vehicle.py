@@ -6,10 +6,12 @@ import numpy as np
 import pytest
 import trimesh
 
+from spaceplane.analysis.settings import QUICK_MESH
 from spaceplane.mesh.generate import generate
 from spaceplane.mesh.settings import MeshSettings
 from spaceplane.vehicle.build import build
 from spaceplane.vehicle.controls import CONTROL_LIMITS_DEG, ControlDeflections
+from spaceplane.vehicle.presets import horus_2b
 from spaceplane.vehicle.shape import ShapeParameters
 from spaceplane.vehicle.surface import Surface
 
@@ -109,3 +111,23 @@ def test_parts_that_touch(gap):
     left, right = bodies.box(1.0, 1.0, 1.0), bodies.box(1.0, 0.8, 0.6, at=(1.0 + gap, 0.0, 0.0))
     surface = bodies.from_trimesh(left, right, names=("left", "right"))
     check_exact(generate(surface, MeshSettings(wall_cell=0.13, far_field=1.0)), surface, 1e-9)
+
+
+def test_control_surfaces_and_edges_are_finer_by_default():
+    mesh = generate(build(horus_2b().shape), QUICK_MESH)
+    size, area = mesh.cell_size[mesh.wall_cell[mesh.piece_wall]], np.linalg.norm(mesh.piece_area, axis=1)
+    mean = {}
+    for k, name in enumerate(mesh.part_names):
+        on = mesh.piece_part == k
+        mean[name] = float(size[on] @ area[on] / area[on].sum())
+    assert mean["fuselage"] > 0.9 * QUICK_MESH.wall_cell
+    for name in (
+        "elevon_left",
+        "elevon_right",
+        "rudder_left",
+        "rudder_right",
+        "body_flap",
+        "wing_left",
+        "winglet_left",
+    ):
+        assert mean[name] < 0.65 * QUICK_MESH.wall_cell
