@@ -132,11 +132,14 @@ def write_picture(path: Path) -> Path:
 
     found = {}
     for name, a, u in points():
-        values = (lateral_control_departure(a.derivatives), dynamic_directional(a.derivatives, a.mass, a.point.alpha))
+        values = (
+            lateral_control_departure(a.derivatives, a.mass),
+            dynamic_directional(a.derivatives, a.mass, a.point.alpha),
+        )
         changes = []
         for label in u.names:
             moved = moved_by({label: u.half_width[label]}, a.point, a.derivatives)[1]
-            pair = lateral_control_departure(moved), dynamic_directional(moved, a.mass, a.point.alpha)
+            pair = lateral_control_departure(moved, a.mass), dynamic_directional(moved, a.mass, a.point.alpha)
             changes.append([after - before for after, before in zip(pair, values, strict=True)])
         errors = [math.sqrt(change @ u.matrix() @ change) for change in np.array(changes).T]
         found[name] = DeparturePoint(*values, *errors)

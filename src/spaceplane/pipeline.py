@@ -16,6 +16,7 @@ from spaceplane.analysis.aerodynamics import solve_aerodynamics
 from spaceplane.analysis.flight import fly
 from spaceplane.analysis.found import Analysis, remarks
 from spaceplane.analysis.settings import AnalyseSettings
+from spaceplane.dynamics.linearise import check_form
 from spaceplane.files import writable_folder
 from spaceplane.flow.settings import check
 from spaceplane.progress import Progress, silent
@@ -42,6 +43,7 @@ def analyse(vehicle: Vehicle, settings: AnalyseSettings | None = None, progress:
         InputError: something in the vehicle or the settings is not allowed.
     """
     settings = settings or AnalyseSettings()
+    check_form(settings.form, vehicle.mass)
     say = progress or silent
     points = settings.flight_points()
     symmetric = is_symmetric(settings.deflections)

@@ -20,6 +20,7 @@ from spaceplane.dynamics.modes import identify
 from spaceplane.dynamics.sensitivity import drivers
 from spaceplane.dynamics.trim.longitudinal import HORUS_2B_BODY_FLAP
 from spaceplane.errors import InputError
+from spaceplane.pipeline import AnalyseSettings, analyse
 from spaceplane.qualities.departure import dynamic_directional
 from spaceplane.qualities.probability import NORMAL_95
 from spaceplane.report import descent as report
@@ -298,3 +299,11 @@ def test_control_is_left_out_where_nobody_asks(tmp_path):
     paths = report.write(found, tmp_path)
     assert "Control power" not in paths["html"].read_text() and "control-roots" not in paths
     assert json.loads(paths["json"].read_text())["points"][0]["control"] is None
+
+
+def test_thesis_form_with_a_product_of_inertia_is_refused_before_anything_is_computed():
+    tilted = replace(MASS, Ixz=-6e4)
+    with pytest.raises(InputError, match="Ixz = -60000 kg m2: must be 0 with form = 'thesis'"):
+        descend(horus_2b_published(), tilted, DescentSettings((2.5,), form="thesis"))
+    with pytest.raises(InputError, match="Ixz = -60000 kg m2: must be 0 with form = 'thesis'"):
+        analyse(replace(horus_2b(), mass=tilted), AnalyseSettings(form="thesis"))

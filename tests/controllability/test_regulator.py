@@ -16,6 +16,7 @@ from spaceplane.control.gramians import energy_to_rest
 from spaceplane.control.regulator import bryson, minimum_effort
 from spaceplane.control.saturation import Takeover, saturated, takeover
 from spaceplane.dynamics.equations import flight_model, state_rates
+from spaceplane.dynamics.linearise import linearise
 from spaceplane.errors import InputError
 
 from .systems import UNITS, horus_system, random_system, scaled, system
@@ -264,6 +265,20 @@ def test_thruster_takes_over_where_the_rudder_stops():
     missing = linear["rudder"].values - np.clip(linear["rudder"].values, -limit, limit)
     assert np.allclose(run["moment_z"].values, relief.ratio * missing, atol=1e-4 * abs(relief.ratio) * limit)
     assert np.abs(run["rudder"].values).max() <= limit
+
+
+@pytest.mark.parametrize("mass", [horus.MASS, horus.TILTED], ids=["symmetric", "Ixz"])
+def test_a_thruster_takes_over_the_moment_of_its_own_axis(mass):
+    """C_l and C_n of the rudder times q S b, whatever the product of inertia makes of them."""
+    d = horus.derivatives(**horus.EXTRA)
+    plant = linearise(horus.point(), mass, horus.REFERENCE, d)
+    qSb = horus.point().dynamic_pressure * horus.REFERENCE.area * horus.REFERENCE.span
+    for coefficient, moment in (("Cl", "moment_x"), ("Cn", "moment_z")):
+        ratio = takeover(plant, "rudder", moment).ratio
+        assert ratio == pytest.approx(d.control(coefficient, "rudder") * qSb, rel=1e-9)
+    only_yaw = horus.derivatives(**{**horus.EXTRA, "Cl_rudder_left": 0.0})
+    with pytest.raises(InputError, match="makes no moment_x"):
+        takeover(linearise(horus.point(), mass, horus.REFERENCE, only_yaw), "rudder", "moment_x")
 
 
 @pytest.mark.parametrize(

@@ -15,6 +15,7 @@ from spaceplane.dynamics.flightpoint import flight_point
 from spaceplane.dynamics.frames import body_to_wind
 from spaceplane.dynamics.linearise import linearise
 from spaceplane.dynamics.modes import identify
+from spaceplane.dynamics.motion.vehicle import angular_acceleration, rigid_vehicle
 from spaceplane.environment import constants
 from spaceplane.environment.atmosphere import us1976
 from spaceplane.errors import InputError
@@ -44,14 +45,14 @@ def wind_of(speed, alpha, beta):
     return speed * np.array([math.cos(alpha) * math.cos(beta), math.sin(beta), math.sin(alpha) * math.cos(beta)])
 
 
-def accelerations(model, altitude, mach, alpha, beta, rates, attitude, deflections):
+def accelerations(model, altitude, mach, alpha, beta, rates, attitude, deflections, mass=HORUS_MASS):
     """(specific aerodynamic force, acceleration, angular acceleration) by Newton and Euler, body axes."""
     air, r = us1976(altitude), model.reference
     speed = mach * air.speed_of_sound
     length = np.array([r.span, r.chord, r.span])
     C = model.coefficients(mach, alpha, beta, tuple(np.array(rates) * length / (2 * speed)), deflections)
     pressure = 0.5 * air.density * speed**2 * r.area
-    force = body_to_wind(alpha, beta).T @ np.array([-C["CD"], C["CY"], -C["CL"]]) * pressure / HORUS_MASS.mass
+    force = body_to_wind(alpha, beta).T @ np.array([-C["CD"], C["CY"], -C["CL"]]) * pressure / mass.mass
     moment = pressure * length * np.array([C["Cl"], C["Cm"], C["Cn"]])
     bank, pitch, _ = attitude
     down = np.array([-math.sin(pitch), math.sin(bank) * math.cos(pitch), math.cos(bank) * math.cos(pitch)])
@@ -59,7 +60,7 @@ def accelerations(model, altitude, mach, alpha, beta, rates, attitude, deflectio
     return (
         force,
         force + weight - np.cross(rates, wind_of(speed, alpha, beta)),
-        (moment - np.cross(rates, INERTIA * rates)) / INERTIA,
+        angular_acceleration(rigid_vehicle(mass), np.array(rates), moment),
     )
 
 
@@ -97,6 +98,19 @@ def test_accelerations_at_random_states(model, fdm):
         assert off(fly.acceleration(fdm), acceleration) < 0.005, state
         assert off(fly.angular_acceleration(fdm), turning) < 0.005, state
         assert fdm[INSIDE] == 1.0
+
+
+@pytest.mark.parametrize("Ixz", [-40e3, 60e3])
+def test_product_of_inertia_has_our_sign(model, tmp_path, Ixz):
+    mass = replace(HORUS_MASS, Ixz=Ixz)
+    write(model, mass, tmp_path, "tilted", CENTER)
+    fdm, moved = fly.load(tmp_path, "tilted"), model.moved(CENTER)
+    for state in random_states(model, 20):
+        put(fdm, state)
+        turning = accelerations(moved, **state, mass=mass)[2]
+        plain = accelerations(moved, **state)[2]
+        assert off(fly.angular_acceleration(fdm), turning) < 0.005, state
+        assert off(plain, turning) > 0.01, state
 
 
 def test_coefficients_are_ours(model, fdm):

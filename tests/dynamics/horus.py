@@ -7,6 +7,8 @@ from spaceplane.dynamics.flightpoint import FlightPoint, flight_point
 from spaceplane.vehicle.properties import MassProperties, ReferenceLengths
 
 MASS = MassProperties(26_000.0, 119_000.0, 769_000.0, 806_000.0)
+TILTED = MassProperties(26_000.0, 119_000.0, 769_000.0, 806_000.0, -60_000.0)
+"""With a product of inertia: principal axes 5.0 deg nose up of the body's."""
 REFERENCE = ReferenceLengths(110.0, 23.0, 13.0, (13.0, 0.0, 0.0))
 
 PER_DEGREE = {

@@ -2,6 +2,7 @@
 
 import json
 import tomllib
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -55,6 +56,51 @@ def test_boeing_747_example_flies_textbook_modes():
     assert {"short_period", "phugoid", "dutch_roll", "roll", "spiral"} <= set(by_kind)
     assert by_kind["short_period"]["eigenvalue"] == pytest.approx([-0.372, 0.887], abs=4e-3)
     assert by_kind["phugoid"]["eigenvalue"] == pytest.approx([-0.0033, 0.067], abs=1e-3)
+    assert by_kind["dutch_roll"]["eigenvalue"] == pytest.approx([-0.033, 0.947], abs=5e-4)
+    assert by_kind["roll"]["eigenvalue"][0] == pytest.approx(-0.563, abs=5e-4)
+    assert by_kind["spiral"]["eigenvalue"][0] == pytest.approx(-0.0073, abs=5e-5)
+    assert record["vehicle"]["Ixz_kgm2"] == -0.212e7
+
+
+def test_product_of_inertia_is_that_of_primed_derivatives():
+    """Boeing 747: Etkin and Reid's I_zx equals Cl' and Cn' without it wherever nothing turns steadily."""
+    case = derivatives_file.read(EXAMPLES / "boeing747_cruise.toml")
+    mass, d = case.mass, case.derivatives
+    share = 1.0 - mass.Ixz**2 / (mass.Ixx * mass.Izz)
+    changed = {}
+    for name in ("beta", "p", "r"):
+        roll, yaw = getattr(d, f"Cl_{name}"), getattr(d, f"Cn_{name}")
+        changed[f"Cl_{name}"] = (roll + mass.Ixz / mass.Izz * yaw) / share
+        changed[f"Cn_{name}"] = (yaw + mass.Ixz / mass.Ixx * roll) / share
+    assert changed["Cl_beta"] == pytest.approx(-0.28660, abs=5e-6)
+    assert changed["Cn_r"] == pytest.approx(-0.30061, abs=5e-6)
+    lift = mass.mass * case.point.gravity / (case.point.dynamic_pressure * case.reference.area)
+    straight = case.point.with_coefficients(lift, case.point.coefficients()[1])
+
+    def eigenvalues(point, mass, derivatives, gyroscopic):
+        system = linearise(point, mass, case.reference, derivatives, density_gradient=False, gyroscopic=gyroscopic)
+        return np.sort_complex(np.linalg.eigvals(system.A))
+
+    for point, gyroscopic in ((straight, True), (case.point, False)):
+        with_product = eigenvalues(point, mass, d, gyroscopic)
+        primed = eigenvalues(point, replace(mass, Ixz=0.0), replace(d, **changed), gyroscopic)
+        assert np.abs(with_product - primed).max() < 1e-9
+        without = eigenvalues(point, replace(mass, Ixz=0.0), d, gyroscopic)
+        assert np.abs(with_product - without).max() > 1e-3
+
+
+def test_product_of_inertia_of_a_file(tmp_path):
+    assert derivatives_file.read(EXAMPLE).mass.Ixz == 0.0
+    path = written(tmp_path, "Izz_kgm2 = 806000.0", "Izz_kgm2 = 806000.0\nIxz_kgm2 = -6e4")
+    case = derivatives_file.read(path)
+    assert case.mass == horus.TILTED
+    record = analyse_modes(case)
+    assert record["eigenvalues"] != analyse_modes(derivatives_file.read(EXAMPLE))["eigenvalues"]
+    path.write_text(path.read_text().replace('"rigid-body"', '"thesis"'))
+    with pytest.raises(InputError, match=r"Ixz = -60000 kg m2: must be 0 with form = 'thesis'"):
+        derivatives_file.read(path)
+    with pytest.raises(InputError, match="must be 0 with form = 'thesis'"):
+        linearise(case.point, case.mass, case.reference, case.derivatives, "thesis")
 
 
 def test_random_derivatives_never_break_the_record():
@@ -124,6 +170,7 @@ def test_model_keys_act(tmp_path):
         ("mach = 2.5", "mach = true", "mach = True: must be a finite number"),
         ("mass_kg = 26000.0", "mass_kg = 0", "mass_kg = 0: must be above 0"),
         ("Iyy_kgm2 = 769000.0", "Iyy_kgm2 = -1", "Iyy_kgm2 = -1: must be above 0"),
+        ("Izz_kgm2 = 806000.0", "Izz_kgm2 = 806000.0\nIxz_kgm2 = 2e5", "Ixz = 200000 kg m2: allowed .* 172766 kg m2"),
         ("altitude_m = 26700.0", "altitude_m = 90000", "altitude_m = 90000"),
         ("CL = 0.36", "CL = inf", "CL = inf"),
         ('unit = "per_degree"', 'unit = "degrees"', "unit = 'degrees'.*per_degree, per_radian"),

@@ -1,6 +1,6 @@
 """The analytic linear model equals the complex-step derivative of the nonlinear equations, term by term, to 1e-8."""
 
-from dataclasses import asdict
+from dataclasses import asdict, replace
 
 import numpy as np
 import pytest
@@ -15,7 +15,7 @@ from . import horus
 RELATIVE = 1e-8
 
 
-def model(rng, **changes):
+def model(rng, mass=horus.MASS, **changes):
     """A random flight point, climbing or descending, banked to either side, with random derivatives of usual sizes."""
     point = horus.point(
         mach=rng.uniform(0.5, 20.0), altitude_m=rng.uniform(1e3, 7e4), alpha_deg=rng.uniform(-5, 45),
@@ -25,7 +25,7 @@ def model(rng, **changes):
     static = {
         name: value * rng.uniform(-2, 2) for name, value in asdict(horus.derivatives()).items() if name != "controls"
     }
-    return flight_model(point, horus.MASS, horus.REFERENCE, horus.derivatives(**{**static, **changes}))
+    return flight_model(point, mass, horus.REFERENCE, horus.derivatives(**{**static, **changes}))
 
 
 def agree(system, measured):
@@ -35,11 +35,13 @@ def agree(system, measured):
         assert (np.abs(ours - theirs) <= RELATIVE * np.abs(theirs) + floor).all()
 
 
+@pytest.mark.parametrize("tilted", [False, True], ids=["symmetric", "Ixz"])
 @pytest.mark.parametrize("seed", range(40))
-def test_random_flight_points(seed):
+def test_random_flight_points(seed, tilted):
     rng = np.random.default_rng(seed)
+    mass = replace(horus.MASS, Ixz=np.random.default_rng(seed).uniform(-160e3, 160e3)) if tilted else horus.MASS
     extra = {name: value * rng.uniform(-2, 2) for name, value in horus.EXTRA.items()}
-    one = model(rng, **extra)
+    one = model(rng, mass, **extra)
     system, measured = analytic(one), numerical(one)
     agree(system, measured)
     assert np.abs(system.A).max(axis=0).min() > 0  # every state acts
@@ -86,3 +88,12 @@ def test_thruster_moments():
     B[[3, 4, 5], [0, 1, 2]] = 1 / 119_000.0, 1 / 769_000.0, 1 / 806_000.0
     assert system.inputs == MOMENT_INPUTS
     assert np.allclose(system.B, B, rtol=1e-15, atol=0)
+
+
+def test_thruster_moments_with_a_product_of_inertia():
+    """The inverse of the tensor: a moment about x yaws, one about z rolls."""
+    system = analytic(model(np.random.default_rng(5), horus.TILTED))
+    mass = horus.TILTED
+    tensor = np.array([[mass.Ixx, 0.0, -mass.Ixz], [0.0, mass.Iyy, 0.0], [-mass.Ixz, 0.0, mass.Izz]])
+    assert np.allclose(system.B[3:6], np.linalg.inv(tensor), rtol=1e-13, atol=0)
+    assert np.count_nonzero(system.B) == 5

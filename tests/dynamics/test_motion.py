@@ -44,8 +44,8 @@ STABLE = {**NO_LAG, "Cm_alpha": -0.1, "Cn_beta": 0.1, "Cl_beta": -0.08, "CY_beta
 NINE = [TRAJECTORY_STATES.index(name) for name in ("V", "gamma", "R", "p", "q", "r", "alpha", "beta", "sigma")]
 
 
-def model(point=None, **changes):
-    return flight_model(point or horus.point(), horus.MASS, horus.REFERENCE, horus.derivatives(**{**STABLE, **changes}))
+def model(point=None, mass=horus.MASS, **changes):
+    return flight_model(point or horus.point(), mass, horus.REFERENCE, horus.derivatives(**{**STABLE, **changes}))
 
 
 def glider(products=(0.0, 0.0, 0.0), **changes):
@@ -418,11 +418,12 @@ def test_small_perturbations_follow_the_linear_model():
     assert errors[1] / errors[2] == pytest.approx(4.0, rel=0.1)
 
 
-def test_slopes_of_the_trajectory_form_are_the_linear_model():
+@pytest.mark.parametrize("mass", [horus.MASS, horus.TILTED], ids=["symmetric", "Ixz"])
+def test_slopes_of_the_trajectory_form_are_the_linear_model(mass):
     """At the TAEM interface, banked and descending: central differences with every state and input."""
-    nine = model()
+    nine = model(mass=mass)
     system = analytic(nine)
-    vehicle = rigid_vehicle(horus.MASS, LinearAerodynamics(nine))
+    vehicle = rigid_vehicle(mass, LinearAerodynamics(nine))
     values = to_trajectory(start(vehicle, EARTH_SPHERE))
     steps = np.array([1e-2, 1e-5, 1e-5, 1.0, 1e-5, 1e-5, 1e-5, 1e-5, 1e-5, 1e-5, 1e-5, 1e-5])
 
@@ -438,6 +439,30 @@ def test_slopes_of_the_trajectory_form_are_the_linear_model():
         size = 1e3 if name.startswith("moment") else 1e-3
         found = (slope(values, {name: size}) - slope(values, {name: -size})) / (2 * size)
         assert found == pytest.approx(system.B[:, column], rel=1e-6, abs=1e-13), name
+
+
+@pytest.mark.parametrize("Ixz", [-150e3, -60e3, 0.0, 100e3])
+def test_nine_states_turn_as_the_full_tensor(Ixz):
+    """The same dp/dt, dq/dt and dr/dt at random states, far from steady, and none in steady flight."""
+    mass = replace(horus.MASS, Ixz=Ixz)
+    nine = model(mass=mass)
+    vehicle = rigid_vehicle(mass, LinearAerodynamics(nine))
+    assert vehicle.inertia[0, 2] == vehicle.inertia[2, 0] == -Ixz
+    reference, rng = nine.reference_state(), np.random.default_rng(11)
+    assert state_rates(reference, np.zeros(len(nine.inputs)), nine)[3:6] == pytest.approx(np.zeros(3), abs=1e-15)
+    for _ in range(40):
+        moments = dict(zip(("moment_x", "moment_y", "moment_z"), rng.normal(scale=1e4, size=3), strict=True))
+        given = np.array([moments.get(name, 0.0) for name in nine.inputs])
+        values = reference + rng.uniform(-1, 1, 9) * [20.0, 0.2, 0.0, 0.6, 0.6, 0.6, 0.05, 0.05, 1.0]
+        twelve = np.array([*values[:2], 0.4, values[2], 0.1, 0.2, *values[3:]])
+        full = trajectory_rates(0.0, twelve, vehicle, EARTH_SPHERE, moments, us1976)[NINE]
+        ours = state_rates(values, given, nine)
+        assert ours[3:6] == pytest.approx(full[3:6], rel=1e-11, abs=1e-13)
+
+
+def test_products_given_apart_win():
+    assert rigid_vehicle(horus.TILTED, products=(0.0, 5.0, 0.0)).inertia[0, 2] == -5.0
+    assert np.array_equal(rigid_vehicle(horus.MASS).inertia, np.diag([119_000.0, 769_000.0, 806_000.0]))
 
 
 # At the door

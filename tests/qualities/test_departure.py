@@ -21,42 +21,50 @@ from spaceplane.qualities.departure import (
 CONTROLS = {"Cl_aileron": 0.05, "Cn_aileron": -0.02, "Cl_rudder": 0.01, "Cn_rudder": -0.05}
 
 
-def lateral(point, derivatives):
+def lateral(point, derivatives, mass):
     """(A, system) of p, r, beta without gravity and gyroscopic moments."""
-    system = linearise(point, horus.MASS, horus.REFERENCE, derivatives, gyroscopic=False)
+    system = linearise(point, mass, horus.REFERENCE, derivatives, gyroscopic=False)
     rows = [system.index(name) for name in ("p", "r", "beta")]
     return system.A[np.ix_(rows, rows)], system
 
 
 @pytest.mark.parametrize("alpha", [0.0, 16.6, 40.0])
 @pytest.mark.parametrize("Cn_beta", [-0.0275, 0.05])
-def test_dynamic_directional_stability_is_the_stiffness_of_sideslip(alpha, Cn_beta):
+@pytest.mark.parametrize("mass", [horus.MASS, horus.TILTED], ids=["symmetric", "Ixz"])
+def test_dynamic_directional_stability_is_the_stiffness_of_sideslip(alpha, Cn_beta, mass):
     d = horus.derivatives(Cn_beta=Cn_beta, CY_beta=0.0)
     point = horus.point(alpha_deg=alpha, bank_deg=0.0, gamma_deg=0.0)
-    A, _ = lateral(point, d)
+    A, _ = lateral(point, d, mass)
     square = -max(np.linalg.eigvals(A) ** 2, key=abs)
-    stiffness = dynamic_directional(d, horus.MASS, point.alpha)
-    wanted = stiffness * point.dynamic_pressure * 110.0 * 13.0 / horus.MASS.Izz
+    stiffness = dynamic_directional(d, mass, point.alpha)
+    wanted = stiffness * point.dynamic_pressure * 110.0 * 13.0 / mass.Izz
     assert square.real == pytest.approx(wanted, rel=1e-9)
+    if mass.Ixz == 0.0:
+        plain = Cn_beta * math.cos(point.alpha) - mass.Izz / mass.Ixx * d.Cl_beta * math.sin(point.alpha)
+        assert stiffness == pytest.approx(plain, rel=1e-15)
 
 
-def test_lcdp_is_the_yaw_stiffness_with_the_wings_held():
+@pytest.mark.parametrize("mass", [horus.MASS, horus.TILTED], ids=["symmetric", "Ixz"])
+def test_lcdp_is_the_yaw_stiffness_with_the_wings_held(mass):
     """The aileron that cancels the rolling moment of sideslip leaves N_beta = LCDP q S b / Izz."""
     d = horus.derivatives(**CONTROLS)
-    A, system = lateral(horus.point(), d)
+    A, system = lateral(horus.point(), d, mass)
     b = system.B[[system.index("p"), system.index("r")], system.inputs.index("aileron")]
     aileron = -A[0, 2] / b[0]
     held = A[1, 2] + b[1] * aileron
     force = horus.point().dynamic_pressure * 110.0 * 13.0 / horus.MASS.Izz
-    assert lateral_control_departure(d) * force == pytest.approx(held, rel=1e-12)
+    assert lateral_control_departure(d, mass) * force == pytest.approx(held, rel=1e-12)
 
 
 def test_rudder_with_the_aileron():
     d = horus.derivatives(**CONTROLS)
     mix = coordinating_rudder(d)
-    assert lateral_control_departure(d, mix) == pytest.approx(0.0, abs=1e-15)
-    assert lateral_control_departure(d, mix + 0.5) * lateral_control_departure(d, mix - 0.5) < 0
-    assert lateral_control_departure(horus.derivatives()) is None and coordinating_rudder(horus.derivatives()) is None
+    for mass in (horus.MASS, horus.TILTED):
+        assert lateral_control_departure(d, mass, mix) == pytest.approx(0.0, abs=1e-15)
+        less, more = (lateral_control_departure(d, mass, mix + step) for step in (-0.5, 0.5))
+        assert less * more < 0
+    plain = horus.derivatives()
+    assert lateral_control_departure(plain, horus.MASS) is None and coordinating_rudder(plain) is None
 
 
 @pytest.mark.parametrize(

@@ -42,6 +42,12 @@ def test_it_gives_back_coefficients_and_derivatives_of_the_flight_point(result):
         assert "extrapolated to no deflection" in model.source
 
 
+def test_product_of_inertia_is_kept_and_may_be_missing(result):
+    assert local_model(result, "2.5").mass.Ixz == 0.0
+    result["vehicle"]["mass"]["Ixz_kgm2"] = -6e4
+    assert local_model(result, "2.5").mass.Ixz == -6e4
+
+
 def test_errors_of_the_analysis_go_along(result):
     point = at(result, "Mach 2.5")
     point["derivatives"]["Cn_beta"]["error"] = 0.02

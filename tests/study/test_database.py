@@ -100,7 +100,9 @@ def folder(tmp_path_factory):
     """Made by the command, in a heavier vehicle with another moment centre."""
     place = tmp_path_factory.mktemp("database")
     vehicle = place / "heavy.yaml"
-    vehicle.write_text("base: horus-2b\nmass: {mass_kg: 31000}\nreference: {moment_center_station_m: 14.8}\n")
+    vehicle.write_text(
+        "base: horus-2b\nmass: {mass_kg: 31000, Ixz_kgm2: -6.0e4}\nreference: {moment_center_station_m: 14.8}\n"
+    )
     done = subprocess.run(
         [sys.executable, "-m", "spaceplane.cli", "database", vehicle, *SMALL, "--out", place / "out"],
         capture_output=True,
@@ -125,7 +127,8 @@ def test_the_folder_holds_model_tables_vehicle_and_page(folder):
 
 def test_its_vehicle_goes_with_it(folder):
     source = read_source(str(folder))
-    assert source.mass.mass == 31000.0 and source.model.reference.moment_center == (14.8, 0.0, 0.0)
+    assert (source.mass.mass, source.mass.Ixz) == (31000.0, -6.0e4)
+    assert source.model.reference.moment_center == (14.8, 0.0, 0.0)
     assert read_source(str(folder), "horus-2b").mass.mass == 26000.0
     loaded = netcdf.load(folder / "model.nc")
     np.testing.assert_array_equal(loaded.base["Cm"], source.model.base["Cm"])

@@ -1,8 +1,9 @@
 """Names, values and limits of shape parameters and deflections; vehicles from YAML."""
 
 import math
-from dataclasses import fields
+from dataclasses import fields, replace
 
+import numpy as np
 import pytest
 
 from spaceplane.errors import InputError
@@ -111,16 +112,43 @@ def test_moment_centre_moves_with_length_and_height_only():
             assert center == (13.0, 0.0, 0.0)
 
 
+@pytest.mark.parametrize("seed", range(5))
+def test_products_of_inertia_are_those_of_a_rigid_body(seed):
+    """Of random masses in pairs at +y and -y: accepted; a little beyond the limit: principal moments of no body."""
+    rng = np.random.default_rng(seed)
+    m, x, y, z = rng.uniform(0.1, 1.0, 8), *rng.normal(size=(3, 8)) * [[5.0], [1.0], [1.0]]
+    x, z = x - m @ x / m.sum(), z - m @ z / m.sum()
+    moments = (float(m @ v) for v in (y**2 + z**2, x**2 + z**2, x**2 + y**2, x * z))
+    found = properties.MassProperties(m.sum(), *moments)
+    bound = 0.5 * math.sqrt(found.Iyy**2 - (found.Ixx - found.Izz) ** 2)
+    for Ixz, allowed in (
+        (0.999 * bound, True),
+        (-0.999 * bound, True),
+        (1.001 * bound, False),
+        (-1.001 * bound, False),
+    ):
+        small, middle, large = np.sort(
+            np.linalg.eigvalsh([[found.Ixx, 0.0, -Ixz], [0.0, found.Iyy, 0.0], [-Ixz, 0.0, found.Izz]])
+        )
+        assert bool(small > 0 and small + middle >= large) is allowed
+        if allowed:
+            assert replace(found, Ixz=Ixz).Ixz == Ixz
+        else:
+            with pytest.raises(InputError, match="Ixz = "):
+                replace(found, Ixz=Ixz)
+
+
 def test_yaml_file_with_overrides(tmp_path):
     path = tmp_path / "mine.yaml"
     path.write_text(
-        "name: mine\nbase: horus-2b-optimised\nshape: {wing_width_m: 3.5}\nmass: {mass_kg: 25000}\n"
+        "name: mine\nbase: horus-2b-optimised\nshape: {wing_width_m: 3.5}\nmass: {mass_kg: 25000, Ixz_kgm2: -9.0e3}\n"
         "reference: {moment_center_station_m: 13.5, moment_center_height_m: 0.2}\n"
     )
     vehicle = presets.load(path, {"winglet_length_m": 3.0})
     assert vehicle.name == "mine"
     assert (vehicle.shape.wing_width_m, vehicle.shape.winglet_length_m, vehicle.shape.fuselage_width_m) == (3.5, 3, 3)
-    assert (vehicle.mass.mass, vehicle.mass.Ixx) == (25_000, 119_000)
+    assert (vehicle.mass.mass, vehicle.mass.Ixx, vehicle.mass.Ixz) == (25_000, 119_000, -9_000)
+    assert presets.horus_2b().mass.Ixz == 0.0
     assert vehicle.reference.moment_center[0] == 13.5
     assert vehicle.reference.moment_center[2] == pytest.approx(0.2 - 0.57 * 1.7 / 4.5)
     assert presets.load(path, {"moment_center_station_m": 12.5}).reference.moment_center[0] == 12.5
@@ -134,6 +162,8 @@ def test_yaml_file_with_overrides(tmp_path):
         ("mass: {mass_kg: heavy}", "mass.mass_kg = 'heavy'"),
         ("mass: {mass_kg: -3}", "mass = -3: must be positive"),
         ("mass: {Ixx_kgm2: 9.0e9}", "Ixx, Iyy, Izz"),
+        ("mass: {Ixz_kgm2: 2.0e5}", "Ixz = 200000 kg m2: allowed with these moments are -172766 to 172766 kg m2"),
+        ("mass: {Ixz_kgm2: .nan}", "Ixz = nan"),
         ("shape: {wing_width_m: 9}", "wing_width_m = 9 m: allowed 2.8 to 3.9"),
         ("base: horus-2c", "unknown vehicle preset 'horus-2c': did you mean 'horus-2b'"),
         ("- 1\n- 2", "must hold keys"),

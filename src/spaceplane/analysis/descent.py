@@ -18,7 +18,7 @@ from spaceplane.analysis.tracked import Tracked, track
 from spaceplane.dynamics.flightpoint import FlightPoint, taem_point
 from spaceplane.dynamics.given_errors import GivenError
 from spaceplane.dynamics.glide import glide_bank, glide_path_angle, tabulated_slope
-from spaceplane.dynamics.linearise import FORMS, linearise
+from spaceplane.dynamics.linearise import FORMS, check_form, linearise
 from spaceplane.dynamics.modes import Mode
 from spaceplane.dynamics.statespace import StateSpace
 from spaceplane.dynamics.tracking import Branches
@@ -193,9 +193,11 @@ def descend(
         progress: called with (phase, done, total, text).
 
     Raises:
-        InputError: a model without elevons, or an error of a derivative that the model does not know.
+        InputError: a model without elevons, an error of a derivative that the model does not know, or the form
+            "thesis" with a product of inertia.
     """
     settings = settings or DescentSettings()
+    check_form(settings.form, mass)
     _check_errors(settings.uncertainty, model)
     say = progress or silent
     points = settings.flight_points()

@@ -35,7 +35,7 @@ class Takeover:
     Attributes:
         control: the input that saturates, such as rudder.
         moment: `moment_x`, `moment_y` or `moment_z`.
-        ratio: N m per rad of the input, from the two columns of B.
+        ratio: N m per rad of the input, from its column of B and those of the moments.
         column: [state] of the moment, per N m.
     """
 
@@ -49,24 +49,26 @@ def takeover(system: StateSpace, control: str, moment: str) -> Takeover:
     """A thruster for an input, with the moment that the input makes about the thruster's axis.
 
     Args:
-        system: the open loop with both among its inputs.
+        system: the open loop with both and all of `moment_x`, `moment_y`, `moment_z` among its inputs.
         control: such as rudder.
         moment: such as `moment_z`.
 
     Raises:
         InputError: an unknown name, or an input that makes no moment about this axis.
     """
-    for name in (control, moment):
-        if name not in system.inputs:
-            raise InputError(unknown_name("input", name, system.inputs))
     if moment not in MOMENT_INPUTS:
         raise InputError(unknown_name("moment", moment, MOMENT_INPUTS))
-    column = system.B[:, system.inputs.index(moment)]
-    row = int(np.argmax(np.abs(column)))
-    ratio = float(system.B[row, system.inputs.index(control)] / column[row])
-    if ratio == 0.0:
+    for name in (control, *MOMENT_INPUTS):
+        if name not in system.inputs:
+            raise InputError(unknown_name("input", name, system.inputs))
+    rates = [system.index(name) for name in ("p", "q", "r")]
+    columns = [system.inputs.index(name) for name in MOMENT_INPUTS]
+    # All three at once: with a product of inertia a moment about x turns about z too.
+    made = np.linalg.solve(system.B[np.ix_(rates, columns)], system.B[rates, system.inputs.index(control)])
+    ratio = float(made[MOMENT_INPUTS.index(moment)])
+    if abs(ratio) <= 1e-12 * np.abs(made).max():
         raise InputError(f"{control}: makes no {moment} that a thruster could take over")
-    return Takeover(control, moment, ratio, column)
+    return Takeover(control, moment, ratio, system.B[:, system.inputs.index(moment)])
 
 
 def saturated(

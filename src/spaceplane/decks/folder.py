@@ -55,7 +55,7 @@ def record_of(model: AeroModel, vehicle: Vehicle, found: dict[str, Any]) -> dict
         "vehicle": {
             "name": vehicle.name,
             "mass_kg": vehicle.mass.mass,
-            **{f"{name}_kgm2": getattr(vehicle.mass, name) for name in ("Ixx", "Iyy", "Izz")},
+            **{f"{name}_kgm2": getattr(vehicle.mass, name) for name in ("Ixx", "Iyy", "Izz", "Ixz")},
             "reference_area_m2": vehicle.reference.area,
             "c_ref_m": vehicle.reference.chord,
             "b_ref_m": vehicle.reference.span,
@@ -82,6 +82,7 @@ def read(folder: Path | str) -> tuple[AeroModel, MassProperties]:
         raise InputError(f"{path}: schema {found[0]} version {found[1]}, not {SCHEMA} version {SCHEMA_VERSION}")
     try:
         values = [record["vehicle"][name] for name in ("mass_kg", "Ixx_kgm2", "Iyy_kgm2", "Izz_kgm2")]
+        values.append(record["vehicle"].get("Ixz_kgm2", 0.0))
     except (KeyError, TypeError) as error:
         raise InputError(f"{path}: vehicle: {error} is missing") from error
     try:

@@ -69,7 +69,7 @@ def write(
 
     Args:
         model: tables; its largest block without empty cells is written, and said so.
-        mass: mass kg and moments of inertia kg m2.
+        mass: mass kg and inertia kg m2.
         folder: to write into; made if missing.
         name: of the aircraft; that of the model by default, with - for other than letters, digits, - and _.
         center_of_mass: x aft of the nose, y right, z up, m, to which the moments move; by default the moment centre of
@@ -195,8 +195,10 @@ def _mass(root: ET.Element, mass: MassProperties, center: tuple[float, float, fl
     balance = ET.SubElement(root, "mass_balance", negated_crossproduct_inertia="true")
     for name in ("Ixx", "Iyy", "Izz"):
         _quantity(balance, name.lower(), getattr(mass, name), "KG*M2")
-    for name in ("ixy", "ixz", "iyz"):
-        _quantity(balance, name, 0.0, "KG*M2")
+    # Negated, also where JSBSim is too old for the attribute, they are elements of the tensor in structural axes; with
+    # x aft and z up that of x and z is the one in body axes, minus the integral of x z dm.
+    for name, value in (("ixy", 0.0), ("ixz", 0.0 - mass.Ixz), ("iyz", 0.0)):
+        _quantity(balance, name, value, "KG*M2")
     _quantity(balance, "emptywt", mass.mass, "KG")
     _location(balance, "CG", center)
 

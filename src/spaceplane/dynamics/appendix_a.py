@@ -4,7 +4,8 @@ Three things of it are not right and are kept on purpose: the side force has the
 (`CY_beta` stands for the printed C_S,beta), a_sigma,gamma lacks 1/cos2(gamma), and the gyroscopic and turning-rate
 terms of the rotation are left out. The roll and yaw rates and the sideslip have the opposite sense of this project's
 body axes (the thesis's point aft, right and up), which leaves the eigenvalues alone. a_beta,R is missing in Appendix
-A but stands in the matrix of section 3.3; it is taken from (3.25).
+A but stands in the matrix of section 3.3; it is taken from (3.25). The thesis neglects products of inertia (section
+3.3): `spaceplane.dynamics.linearise` refuses `Ixz` in this form.
 """
 
 from __future__ import annotations

@@ -20,7 +20,7 @@ from spaceplane.aero.model.derivatives import (
 from spaceplane.dynamics import toml_tables
 from spaceplane.dynamics.flightpoint import FlightPoint, flight_point
 from spaceplane.dynamics.given_errors import given_error, half_widths
-from spaceplane.dynamics.linearise import FORMS
+from spaceplane.dynamics.linearise import FORMS, check_form
 from spaceplane.dynamics.sensitivity import AT_POINT, PARAMETERS, value_of
 from spaceplane.errors import InputError
 from spaceplane.vehicle.properties import MassProperties, ReferenceLengths
@@ -32,6 +32,7 @@ UNITS = ("per_degree", "per_radian")
 FLIGHT_REQUIRED = ("mach", "altitude_m", "alpha_deg", "gamma_deg", "bank_deg", "CL", "CD")
 FLIGHT_OPTIONAL = ("pressure_Pa", "temperature_K")
 VEHICLE_REQUIRED = ("mass_kg", "Ixx_kgm2", "Iyy_kgm2", "Izz_kgm2", "area_m2", "c_ref_m", "b_ref_m")
+VEHICLE_OPTIONAL = ("Ixz_kgm2",)
 SAMPLES = 2000
 AIRFRAME_NUMBERS = ("Cm", "elevator_deg", "rudder_per_aileron")
 AIRFRAME_KEYS = ("load_factors", "speed_range")
@@ -45,7 +46,7 @@ class ModesCase:
 
     Attributes:
         point: flight point with CL and CD.
-        mass: mass and moments of inertia.
+        mass: mass and inertia.
         reference: reference area and lengths; the moment centre is not known from derivatives alone and set to zero.
         derivatives: per rad and per unit Mach.
         form: form of the linear model.
@@ -107,15 +108,17 @@ def from_tables(content: Mapping[str, object]) -> ModesCase:
     """
     toml_tables.known("", content, ("flight", "vehicle", "derivatives", "model", "uncertainty", "airframe"))
     flight = toml_tables.numbers(content, "flight", FLIGHT_REQUIRED, FLIGHT_OPTIONAL)
-    vehicle = toml_tables.numbers(content, "vehicle", VEHICLE_REQUIRED, ())
+    vehicle = toml_tables.numbers(content, "vehicle", VEHICLE_REQUIRED, VEHICLE_OPTIONAL)
     for name, value in vehicle.items():
-        if value <= 0:
+        if value <= 0 and name not in VEHICLE_OPTIONAL:
             raise InputError(f"[vehicle] {name} = {value:g}: must be above 0")
     form, density_gradient, gyroscopic, vehicle_class, category = _model(content)
+    mass = MassProperties(*(vehicle[key] for key in VEHICLE_REQUIRED[:4]), vehicle.get("Ixz_kgm2", 0.0))
+    check_form(form, mass)
     point, derivatives = flight_point(**flight), _derivatives(content)
     return ModesCase(
         point=point,
-        mass=MassProperties(*(vehicle[key] for key in VEHICLE_REQUIRED[:4])),
+        mass=mass,
         reference=ReferenceLengths(vehicle["area_m2"], vehicle["c_ref_m"], vehicle["b_ref_m"], (0.0, 0.0, 0.0)),
         derivatives=derivatives,
         form=form,

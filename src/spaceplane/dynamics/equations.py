@@ -7,9 +7,9 @@ wing down positive). Heading, longitude and latitude do not act back on them. Wi
     dV/dt     = -D/m - g sin(gamma)
     dgamma/dt = (L cos(sigma) - Y sin(sigma)) / (m V) - (g/V - V/R) cos(gamma)
     dR/dt     = V sin(gamma)
-    Ixx dp/dt = Mx + (Iyy - Izz) q r
-    Iyy dq/dt = My + (Izz - Ixx) p r
-    Izz dr/dt = Mz + (Ixx - Iyy) p q
+    Ixx dp/dt - Ixz dr/dt = Mx + (Iyy - Izz) q r + Ixz p q
+    Iyy dq/dt             = My + (Izz - Ixx) p r - Ixz (p^2 - r^2)
+    Izz dr/dt - Ixz dp/dt = Mz + (Ixx - Iyy) p q - Ixz q r
     dalpha/dt = q - (p cos(alpha) + r sin(alpha)) tan(beta) - Q / cos(beta)
     dbeta/dt  = p sin(alpha) - r cos(alpha) + Y/(m V) + (g/V) cos(gamma) sin(sigma)
     dsigma/dt = (p cos(alpha) + r sin(alpha)) / cos(beta) + Q tan(beta) + w tan(gamma)
@@ -18,8 +18,8 @@ wing down positive). Heading, longitude and latitude do not act back on them. Wi
 
 They follow from the turning rate of the trajectory axes (x along the velocity, y kept horizontal), which is
 (-w tan(gamma), (L cos(sigma) - Y sin(sigma))/(m V) - (g/V) cos(gamma), w), and the turns by sigma, -beta and alpha on
-to the body. The rates are those against inertial space, so the curvature of the Earth enters only dgamma/dt. Products
-of inertia are neglected, as by the thesis (section 3.3).
+to the body. The rates are those against inertial space, so the curvature of the Earth enters only dgamma/dt. The
+vehicle is symmetric, so that Ixy and Iyz are zero; Ixz = integral of x z dm, which the thesis neglects (section 3.3).
 
 The aerodynamic coefficients are linear about the flight point. Air density and speed of sound follow the atmosphere's
 gradient at the flight point: exponential density, linear speed of sound.
@@ -34,6 +34,7 @@ import numpy as np
 
 from spaceplane.aero.model.derivatives import COEFFICIENTS, Derivatives
 from spaceplane.dynamics.flightpoint import AngularRates, FlightPoint, equilibrium_rates
+from spaceplane.dynamics.inertia import coupling, primed
 from spaceplane.dynamics.statespace import MOMENT_INPUTS
 from spaceplane.environment import constants as c
 from spaceplane.environment.atmosphere import HIGHEST_ALTITUDE, LOWEST_ALTITUDE, us1976
@@ -60,7 +61,7 @@ class FlightModel:
 
     Attributes:
         point: flight point with CL and CD.
-        mass: mass and moments of inertia.
+        mass: mass and inertia.
         reference: reference area and lengths.
         derivatives: per rad and per unit Mach.
         inputs: names of the inputs: controls, then moments.
@@ -133,13 +134,8 @@ def flight_model(
     force = point.dynamic_pressure * reference.area
     if force * reference.span * reference.chord == 0.0:
         raise InputError("reference area, chord and span must be above 0")
-    moments = np.array(
-        [
-            (mass.Iyy - mass.Izz) * rates.q * rates.r / (force * reference.span),
-            (mass.Izz - mass.Ixx) * rates.p * rates.r / (force * reference.chord),
-            (mass.Ixx - mass.Iyy) * rates.p * rates.q / (force * reference.span),
-        ]
-    )
+    lengths = np.array([reference.span, reference.chord, reference.span])
+    moments = np.array(coupling(mass, rates.p, rates.q, rates.r)) / (force * lengths)
     trim = tuple(float(-value) if gyroscopic else 0.0 for value in moments)
     return FlightModel(
         point=point,
@@ -174,7 +170,10 @@ def state_rates(state: Sequence[complex], inputs: Sequence[complex], model: Flig
     Mx, My, Mz = force * ref.span * Cl, force * ref.chord * Cm, force * ref.span * Cn
     if len(inputs):
         Mx, My, Mz = Mx + inputs[-3], My + inputs[-2], Mz + inputs[-1]
-    spin = 1.0 if model.gyroscopic else 0.0
+    if model.gyroscopic:
+        spin = coupling(mass, p, q, r)
+        Mx, My, Mz = Mx + spin[0], My + spin[1], Mz + spin[2]
+    Mx, Mz = primed(mass, Mx, Mz)
     roll_stability = p * np.cos(alpha) + r * np.sin(alpha)
     pull = L / (mass.mass * V) - g / V * np.cos(gamma) * np.cos(sigma)
     turn = (L * np.sin(sigma) + Y * np.cos(sigma)) / (mass.mass * V)
@@ -183,9 +182,9 @@ def state_rates(state: Sequence[complex], inputs: Sequence[complex], model: Flig
             -D / mass.mass - g * np.sin(gamma),
             (L * np.cos(sigma) - Y * np.sin(sigma)) / (mass.mass * V) - (g / V - V / R) * np.cos(gamma),
             V * np.sin(gamma),
-            (Mx + spin * (mass.Iyy - mass.Izz) * q * r) / mass.Ixx,
-            (My + spin * (mass.Izz - mass.Ixx) * p * r) / mass.Iyy,
-            (Mz + spin * (mass.Ixx - mass.Iyy) * p * q) / mass.Izz,
+            Mx / mass.Ixx,
+            My / mass.Iyy,
+            Mz / mass.Izz,
             alpha_dot,
             p * np.sin(alpha) - r * np.cos(alpha) + Y / (mass.mass * V) + g / V * np.cos(gamma) * np.sin(sigma),
             roll_stability / np.cos(beta) + pull * np.tan(beta) + turn * np.tan(gamma),

@@ -13,6 +13,7 @@ from spaceplane.aero.model.derivatives import COEFFICIENTS, Derivatives
 from spaceplane.dynamics import appendix_a
 from spaceplane.dynamics.equations import FlightModel, flight_model, state_rates
 from spaceplane.dynamics.flightpoint import FlightPoint
+from spaceplane.dynamics.inertia import primed
 from spaceplane.dynamics.statespace import STATES, StateSpace
 from spaceplane.errors import InputError
 from spaceplane.vehicle.properties import MassProperties, ReferenceLengths
@@ -33,7 +34,7 @@ def linearise(
 
     Args:
         point: flight point with CL and CD.
-        mass: mass and moments of inertia, SI.
+        mass: mass and inertia, SI.
         reference: reference area and lengths, SI.
         derivatives: per rad and per unit Mach.
         form: "rigid-body" or "thesis".
@@ -41,14 +42,25 @@ def linearise(
         gyroscopic: `rigid-body` only: keep the gyroscopic moments of the steady turning rates.
 
     Raises:
-        InputError: unknown form, or CL or CD missing.
+        InputError: unknown form, CL or CD missing, or form "thesis" with a product of inertia.
     """
-    if form not in FORMS:
-        raise InputError(f"form = {form!r}: must be one of {', '.join(FORMS)}")
+    check_form(form, mass)
     if form == "thesis":
         return appendix_a.state_space(point, mass, reference, derivatives)
     model = flight_model(point, mass, reference, derivatives, density_gradient, gyroscopic)
     return analytic(model)
+
+
+def check_form(form: str, mass: MassProperties) -> None:
+    """Refuse a form that does not exist, or that a vehicle cannot have.
+
+    Raises:
+        InputError: unknown form, or form "thesis" with a product of inertia, which Appendix A does not know.
+    """
+    if form not in FORMS:
+        raise InputError(f"form = {form!r}: must be one of {', '.join(FORMS)}")
+    if form == "thesis" and mass.Ixz != 0.0:
+        raise InputError(f"Ixz = {mass.Ixz:g} kg m2: must be 0 with form = 'thesis', which has no product of inertia")
 
 
 def analytic(model: FlightModel) -> StateSpace:
@@ -150,27 +162,19 @@ def _moment_rows(
     inertia, ref, rates = model.mass, model.reference, model.rates
     roll, pitch, yaw = model.trim
     dmx, dmy, dmz = inputs[-3:]
-    spin = 1.0 if model.gyroscopic else 0.0
-    return [
-        (
-            ref.span * (force * dC["Cl"] + roll * dforce)
-            + dmx
-            + spin * (inertia.Iyy - inertia.Izz) * (rates.q * d["r"] + rates.r * d["q"])
-        )
-        / inertia.Ixx,
-        (
-            ref.chord * (force * dC["Cm"] + pitch * dforce)
-            + dmy
-            + spin * (inertia.Izz - inertia.Ixx) * (rates.p * d["r"] + rates.r * d["p"])
-        )
-        / inertia.Iyy,
-        (
-            ref.span * (force * dC["Cn"] + yaw * dforce)
-            + dmz
-            + spin * (inertia.Ixx - inertia.Iyy) * (rates.p * d["q"] + rates.q * d["p"])
-        )
-        / inertia.Izz,
-    ]
+    about_x = ref.span * (force * dC["Cl"] + roll * dforce) + dmx
+    about_y = ref.chord * (force * dC["Cm"] + pitch * dforce) + dmy
+    about_z = ref.span * (force * dC["Cn"] + yaw * dforce) + dmz
+    if model.gyroscopic:
+        dqr = rates.q * d["r"] + rates.r * d["q"]
+        dpr = rates.p * d["r"] + rates.r * d["p"]
+        dpq = rates.p * d["q"] + rates.q * d["p"]
+        about_x = about_x + (inertia.Iyy - inertia.Izz) * dqr + inertia.Ixz * dpq
+        about_y = about_y + (inertia.Izz - inertia.Ixx) * dpr
+        about_y = about_y - 2.0 * inertia.Ixz * (rates.p * d["p"] - rates.r * d["r"])
+        about_z = about_z + (inertia.Ixx - inertia.Iyy) * dpq - inertia.Ixz * dqr
+    about_x, about_z = primed(inertia, about_x, about_z)
+    return [about_x / inertia.Ixx, about_y / inertia.Iyy, about_z / inertia.Izz]
 
 
 def numerical(model: FlightModel, step: float = 1e-30) -> StateSpace:

@@ -1,13 +1,12 @@
 """Criteria of departure from controlled flight: C_n_beta,dyn, LCDP and the regions of their plane.
 
 C_n_beta,dyn = C_n_beta cos(alpha) - (Izz/Ixx) C_l_beta sin(alpha) is the stiffness of sideslip when the vehicle turns
-freely about
-both body axes: without gravity, side force and damping the lateral oscillation has omega^2 = C_n_beta,dyn q S b / Izz
-exactly. The lateral control departure parameter LCDP = C_n_beta - C_l_beta C_n_a / C_l_a is the stiffness in yaw when
-the aileron holds the
-wings: below zero, sideslip grows and the vehicle ends up rolling against the aileron. A rudder that follows the
-aileron by a ratio k puts C_n_a + k C_n_r and C_l_a + k C_l_r in its place. Moul and Paulson, NACA RM L58E16 (1958);
-Weissman, J. Aircraft 12 (1975).
+freely about both body axes: without gravity, side force and damping the lateral oscillation has omega^2 =
+C_n_beta,dyn q S b / Izz exactly. The lateral control departure parameter LCDP = C_n_beta - C_l_beta C_n_a / C_l_a is
+the stiffness in yaw when the aileron holds the wings: below zero, sideslip grows and the vehicle ends up rolling
+against the aileron. A rudder that follows the aileron by a ratio k puts C_n_a + k C_n_r and C_l_a + k C_l_r in its
+place. With a product of inertia Ixz every pair (C_l, C_n) is primed in both (`spaceplane.dynamics.inertia.primed`),
+so that they mean the same. Moul and Paulson, NACA RM L58E16 (1958); Weissman, J. Aircraft 12 (1975).
 """
 
 from __future__ import annotations
@@ -16,6 +15,7 @@ import math
 from dataclasses import dataclass
 
 from spaceplane.aero.model.derivatives import Derivatives
+from spaceplane.dynamics.inertia import primed
 from spaceplane.errors import InputError
 from spaceplane.qualities import limits
 from spaceplane.qualities.airframe import Airframe
@@ -49,24 +49,30 @@ def dynamic_directional(derivatives: Derivatives, mass: MassProperties, alpha: f
 
     Args:
         derivatives: Cn_beta and Cl_beta, body axes, per rad.
-        mass: moments of inertia.
+        mass: its inertia.
         alpha: angle of attack, rad.
     """
-    return derivatives.Cn_beta * math.cos(alpha) - mass.Izz / mass.Ixx * derivatives.Cl_beta * math.sin(alpha)
+    Cl, Cn = primed(mass, derivatives.Cl_beta, derivatives.Cn_beta)
+    return Cn * math.cos(alpha) - mass.Izz / mass.Ixx * Cl * math.sin(alpha)
 
 
-def lateral_control_departure(derivatives: Derivatives, rudder_per_aileron: float | None = None) -> float | None:
+def lateral_control_departure(
+    derivatives: Derivatives, mass: MassProperties, rudder_per_aileron: float | None = None
+) -> float | None:
     """LCDP, 1/rad; None where the roll control has no rolling moment.
 
     Args:
         derivatives: per rad.
+        mass: its inertia.
         rudder_per_aileron: ratio of the rudder that follows the aileron; None for none.
     """
     mix = rudder_per_aileron or 0.0
     roll, yaw = (derivatives.control(c, "aileron") + mix * derivatives.control(c, "rudder") for c in ("Cl", "Cn"))
+    roll, yaw = primed(mass, roll, yaw)
     if "aileron" not in derivatives.available_controls() or roll == 0.0:
         return None
-    return derivatives.Cn_beta - derivatives.Cl_beta * yaw / roll
+    Cl, Cn = primed(mass, derivatives.Cl_beta, derivatives.Cn_beta)
+    return Cn - Cl * yaw / roll
 
 
 def coordinating_rudder(derivatives: Derivatives) -> float | None:
@@ -107,7 +113,7 @@ def verdicts(airframe: Airframe, context: Context) -> list[Verdict]:
     """Directional stability, its guideline, lateral control, and the region of both; no levels, `met` instead."""
     d = airframe.derivatives
     directional = dynamic_directional(d, airframe.mass, airframe.point.alpha)
-    lcdp = lateral_control_departure(d, airframe.rudder_per_aileron)
+    lcdp = lateral_control_departure(d, airframe.mass, airframe.rudder_per_aileron)
     note = f"C_n_beta {d.Cn_beta * PER_DEGREE:.3g} and C_l_beta {d.Cl_beta * PER_DEGREE:.3g} per deg"
     mixed = airframe.rudder_per_aileron is not None
     how = f"rudder per aileron {airframe.rudder_per_aileron:.3g}" if mixed else "aileron alone"

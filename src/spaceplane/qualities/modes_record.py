@@ -63,6 +63,7 @@ def analyse_modes(case: ModesCase) -> dict:
             "Ixx_kgm2": case.mass.Ixx,
             "Iyy_kgm2": case.mass.Iyy,
             "Izz_kgm2": case.mass.Izz,
+            "Ixz_kgm2": case.mass.Ixz,
             "area_m2": case.reference.area,
             "c_ref_m": case.reference.chord,
             "b_ref_m": case.reference.span,

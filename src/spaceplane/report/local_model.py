@@ -59,7 +59,9 @@ def local_model(result: Mapping, point: str | None = None) -> Source:
         **start,
     )
     mass = vehicle["mass"]
-    properties = MassProperties(*(mass[key] for key in ("mass_kg", "Ixx_kgm2", "Iyy_kgm2", "Izz_kgm2")))
+    properties = MassProperties(
+        *(mass[key] for key in ("mass_kg", "Ixx_kgm2", "Iyy_kgm2", "Izz_kgm2")), mass.get("Ixz_kgm2", 0.0)
+    )
     return Source(model, properties, _errors(chosen), point=_flown(chosen))
 
 

@@ -75,7 +75,13 @@ def vehicle(subject: Vehicle, deflections: ControlDeflections, surface: Surface)
             for p in PARAMETERS
         },
         "deflections_deg": {name: round(value, 10) for name, value in deflections.to_degrees().items()},
-        "mass": {"mass_kg": mass.mass, "Ixx_kgm2": mass.Ixx, "Iyy_kgm2": mass.Iyy, "Izz_kgm2": mass.Izz},
+        "mass": {
+            "mass_kg": mass.mass,
+            "Ixx_kgm2": mass.Ixx,
+            "Iyy_kgm2": mass.Iyy,
+            "Izz_kgm2": mass.Izz,
+            "Ixz_kgm2": mass.Ixz,
+        },
         "reference": {
             "area_m2": reference.area,
             "c_ref_m": reference.chord,

@@ -371,7 +371,8 @@ def _vehicle_tables(vehicle: dict) -> list[tuple[str, list[tuple[str, str, str]]
         (
             "Mass properties",
             [("Mass", number(mass.get("mass_kg"), 6), "kg")]
-            + [(f"I{a}{a}", number(mass.get(f"I{a}{a}_kgm2"), 6), "kg m²") for a in "xyz"],
+            + [(f"I{a}{a}", number(mass.get(f"I{a}{a}_kgm2"), 6), "kg m²") for a in "xyz"]
+            + ([("Ixz", number(mass["Ixz_kgm2"], 6), "kg m²")] if mass.get("Ixz_kgm2") else []),
         ),
         (
             "Reference lengths",

@@ -57,7 +57,7 @@ def run(fine: bool, progress: Progress) -> list[Record]:
         progress: told what runs.
     """
     progress("Boeing 747", 0.0)
-    records = [*lateral_747(), *longitudinal_747()]
+    records = [*lateral_747(), *from_derivatives_747()]
     progress("Navion, DC-8", 0.25)
     records += [*navion(), *lateral_dc8()]
     progress("HORUS-2B", 0.5)
@@ -80,17 +80,21 @@ def lateral_747() -> list[Record]:
     return records
 
 
-def longitudinal_747() -> list[Record]:
-    """Short period and phugoid of the nine-state model, with the book's derivatives turned into ours."""
-    modes = {mode.kind: mode for mode in identify(longitudinal_747_system())}
+def from_derivatives_747() -> list[Record]:
+    """Modes of the nine-state model, with the book's derivatives turned into ours and its product of inertia."""
+    modes = {mode.kind: mode for mode in identify(system_747())}
     note = "thrust, which the nine-state model lacks, is put into CL_alpha, CD_alpha and CD_M"
+    where, tensor = "Boeing 747 lateral, derivatives", "published to two or three digits; I_zx = -0.212e7 kg m2"
     return [
         *_pair("short period", "Boeing 747 longitudinal", -0.3719 + 0.8875j, modes["short_period"], 0.01, ETKIN, note),
         *_pair("phugoid", "Boeing 747 longitudinal", -0.003289 + 0.06723j, modes["phugoid"], 0.01, ETKIN, note),
+        *_pair("Dutch roll", where, -0.033 + 0.947j, modes["dutch_roll"], 0.01, ETKIN, tensor),
+        _record("roll mode", where, "1/s", -0.563, modes["roll"].eigenvalue.real, 0.01, ETKIN, tensor),
+        _record("spiral", where, "1/s", -0.0073, modes["spiral"].eigenvalue.real, 0.01, ETKIN, tensor),
     ]
 
 
-def longitudinal_747_system() -> StateSpace:
+def system_747() -> StateSpace:
     """The nine-state model of the Boeing 747-100 at Mach 0.8 and 40 000 ft, in uniform air as in the book."""
     mach, density, speed, area, weight = 0.8, 0.3045, 235.9, 511.0, 2.83176e6
     temperature = (speed / mach) ** 2 / (RATIO_OF_SPECIFIC_HEATS * GAS_CONSTANT_AIR)
@@ -98,7 +102,7 @@ def longitudinal_747_system() -> StateSpace:
     point = flight_point(
         mach, 12_192.0, 0.0, 0.0, 0.0, lift, drag, density * GAS_CONSTANT_AIR * temperature, temperature
     )
-    mass = MassProperties(weight / point.gravity, 0.247e8, 0.449e8, 0.673e8)
+    mass = MassProperties(weight / point.gravity, 0.247e8, 0.449e8, 0.673e8, -0.212e7)
     derivatives = from_mapping(
         {
             "CD_alpha": lift - 0.2193, "CL_alpha": 4.92, "Cm_alpha": -1.023,

@@ -55,6 +55,7 @@ class _MassSection(_Section):
     Ixx_kgm2: float | None = None
     Iyy_kgm2: float | None = None
     Izz_kgm2: float | None = None
+    Ixz_kgm2: float | None = None
 
 
 class _ReferenceSection(_Section):
@@ -84,9 +85,9 @@ def load(
     """A vehicle by preset name or from a YAML file.
 
     The file may hold `name`, `base` (a preset to start from), `shape` (names as in `ShapeParameters`), `mass`
-    (mass_kg, Ixx_kgm2, Iyy_kgm2, Izz_kgm2) and `reference` (area_m2, chord_m, span_m, moment_center_station_m,
-    moment_center_height_m: the moment centre of the default shape, m behind the nose and above the reference axis; it
-    moves with the shape by `properties.scaled_moment_center`).
+    (mass_kg, Ixx_kgm2, Iyy_kgm2, Izz_kgm2, Ixz_kgm2) and `reference` (area_m2, chord_m, span_m,
+    moment_center_station_m, moment_center_height_m: the moment centre of the default shape, m behind the nose and
+    above the reference axis; it moves with the shape by `properties.scaled_moment_center`).
 
     Args:
         name_or_path: a name from `PRESETS` or a path that ends in .yaml or .yml.
@@ -131,6 +132,7 @@ def load(
             HORUS_MASS.Ixx if mass.Ixx_kgm2 is None else mass.Ixx_kgm2,
             HORUS_MASS.Iyy if mass.Iyy_kgm2 is None else mass.Iyy_kgm2,
             HORUS_MASS.Izz if mass.Izz_kgm2 is None else mass.Izz_kgm2,
+            HORUS_MASS.Ixz if mass.Ixz_kgm2 is None else mass.Ixz_kgm2,
         ),
         scaled_reference(shape, base, station, height),
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, fields, replace
 
 import numpy as np
@@ -18,28 +19,36 @@ MOMENT_CENTER_HEIGHT = 0.0  # m above the reference axis
 
 @dataclass(frozen=True)
 class MassProperties:
-    """Mass and moments of inertia about the centre of mass; products of inertia are zero.
+    """Mass, moments of inertia and the one product of inertia that a mirror-symmetric vehicle has.
 
     Attributes:
         mass: kg.
-        Ixx, Iyy, Izz: kg m2 about the body axes x forward, y right, z down.
+        Ixx, Iyy, Izz: kg m2 about the body axes x forward, y right, z down, through the centre of mass.
+        Ixz: kg m2, the integral of x z dm: positive with mass low in front and high behind. The tensor has -Ixz.
 
     Raises:
-        InputError: a value is not a positive number, or the inertias are those of no rigid body.
+        InputError: a value is not a positive number (Ixz: not finite), or the inertias are those of no rigid body.
     """
 
     mass: float
     Ixx: float
     Iyy: float
     Izz: float
+    Ixz: float = 0.0
 
     def __post_init__(self) -> None:
-        _require_positive(self)
+        _require_positive(self, skip=("Ixz",))
+        object.__setattr__(self, "Ixz", finite_number("Ixz", self.Ixz))
         a, b, c = sorted((self.Ixx, self.Iyy, self.Izz))
         if a + b < c:
             raise InputError(
                 f"Ixx, Iyy, Izz = {self.Ixx:g}, {self.Iyy:g}, {self.Izz:g} kg m2: the largest exceeds the sum"
             )
+        # Principal moments in the x-z plane differ by sqrt((Ixx - Izz)^2 + 4 Ixz^2), by Iyy at most; then none is
+        # negative, since they add to Ixx + Izz, which is no less than Iyy.
+        most = 0.5 * math.sqrt(max(self.Iyy**2 - (self.Ixx - self.Izz) ** 2, 0.0))
+        if abs(self.Ixz) > most or self.Ixz**2 >= self.Ixx * self.Izz:
+            raise InputError(f"Ixz = {self.Ixz:g} kg m2: allowed with these moments are {-most:g} to {most:g} kg m2")
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 from tests.aero.model import linear
-from tests.dynamics.horus import MASS
+from tests.dynamics.horus import MASS, TILTED
 
 from spaceplane.dynamics.equations import flight_model, state_rates
 from spaceplane.dynamics.flightpoint import equilibrium_rates, flight_point
@@ -50,11 +50,12 @@ def test_rates_hold_the_attitude_in_the_equations_of_motion(bank_deg, beta_deg):
     assert change[6:9] == pytest.approx([0.0, 0.0, 0.0], abs=1e-14)
 
 
-def test_gyroscopic_moments_hold_the_rates():
+@pytest.mark.parametrize("mass", [MASS, TILTED], ids=["symmetric", "Ixz"])
+def test_gyroscopic_moments_hold_the_rates(mass):
     at = point(55.0)
-    rates = steady_rates(at, MASS.mass, 110.0, 0.4, -0.02, 0.05)
-    needed = gyroscopic_moments(at, MASS, linear.REFERENCE, rates)
-    inertia = np.diag([MASS.Ixx, MASS.Iyy, MASS.Izz])
+    rates = steady_rates(at, mass.mass, 110.0, 0.4, -0.02, 0.05)
+    needed = gyroscopic_moments(at, mass, linear.REFERENCE, rates)
+    inertia = np.array([[mass.Ixx, 0.0, -mass.Ixz], [0.0, mass.Iyy, 0.0], [-mass.Ixz, 0.0, mass.Izz]])
     spin = np.array([rates.p, rates.q, rates.r])
     moment = np.cross(spin, inertia @ spin)
     scale = at.dynamic_pressure * 110.0 * np.array([13.0, 23.0, 13.0])

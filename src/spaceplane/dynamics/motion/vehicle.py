@@ -86,19 +86,20 @@ class Vehicle:
 def rigid_vehicle(
     mass: MassProperties,
     aerodynamics: Aerodynamics | None = None,
-    products: tuple[float, float, float] = (0.0, 0.0, 0.0),
+    products: tuple[float, float, float] | None = None,
 ) -> Vehicle:
     """A vehicle from its mass properties.
 
     Args:
         mass: kg and kg m2.
         aerodynamics: coefficients about the centre of mass; None in vacuum.
-        products: products of inertia (Ixy, Ixz, Iyz), kg m2, such as Ixz = integral of x z dm; 0 by default.
+        products: products of inertia (Ixy, Ixz, Iyz), kg m2, such as Ixz = integral of x z dm; by default
+            (0, `mass.Ixz`, 0).
 
     Raises:
         InputError: moments and products are those of no rigid body.
     """
-    Ixy, Ixz, Iyz = products
+    Ixy, Ixz, Iyz = (0.0, mass.Ixz, 0.0) if products is None else products
     tensor = np.array([[mass.Ixx, -Ixy, -Ixz], [-Ixy, mass.Iyy, -Iyz], [-Ixz, -Iyz, mass.Izz]])
     return Vehicle(mass.mass, tensor, aerodynamics)
 

@@ -20,6 +20,7 @@ import numpy as np
 from spaceplane.aero.model.model import AeroModel, OutsideTables
 from spaceplane.dynamics.flightpoint import AngularRates, FlightPoint
 from spaceplane.dynamics.frames import body_to_wind, wind_to_trajectory
+from spaceplane.dynamics.inertia import coupling
 from spaceplane.dynamics.trim.allocation import MOMENTS, Allocation, allocate
 from spaceplane.dynamics.trim.effects import Limits
 from spaceplane.errors import InputError, unknown_name
@@ -95,10 +96,11 @@ def gyroscopic_moments(
         rates: rad/s.
     """
     force = point.dynamic_pressure * reference.area
+    roll, pitch, yaw = coupling(mass, rates.p, rates.q, rates.r)
     return {
-        "Cl": (mass.Izz - mass.Iyy) * rates.q * rates.r / (force * reference.span),
-        "Cm": (mass.Ixx - mass.Izz) * rates.p * rates.r / (force * reference.chord),
-        "Cn": (mass.Iyy - mass.Ixx) * rates.p * rates.q / (force * reference.span),
+        "Cl": -roll / (force * reference.span),
+        "Cm": -pitch / (force * reference.chord),
+        "Cn": -yaw / (force * reference.span),
     }
 
 
