@@ -6,6 +6,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+LEAST_FORCE = 2e-3
+"""Dynamic pressure on this share of the wetted area is the least force that a wandering one is measured by. A slender
+vehicle's drag is five times as large; a sphere's at Mach 0.5, all of it error, a fifth."""
+
 
 @dataclass
 class History:
@@ -53,7 +57,10 @@ class History:
         return float(np.log10(max(before, 1e-300) / max(since, 1e-300)))
 
     def spread(self, window: int) -> float:
-        """Half peak-to-peak of the force over the last `window` iterations, on the mean force's size."""
+        """Half peak-to-peak of the force over the last `window` iterations, on the mean force's size.
+
+        Never by less than `LEAST_FORCE`, so that a flow with next to none can stand still too.
+        """
         force = np.array(self.force[-window:])
-        scale = max(float(np.linalg.norm(force.mean(axis=0))), 1e-6)
+        scale = max(float(np.linalg.norm(force.mean(axis=0))), LEAST_FORCE)
         return float(0.5 * np.ptp(force, axis=0).max() / scale)
