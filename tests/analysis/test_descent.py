@@ -138,6 +138,13 @@ def test_where_the_center_of_mass_would_have_to_be():
     assert found.count == 3 and found.lower - 0.3 < x < found.upper + 0.3
 
 
+def test_no_center_is_looked_for_where_moments_cannot_be_moved():
+    """Of a derivatives file: where its moment centre lies is not known."""
+    model = replace(horus_2b_published(), center_known=False)
+    assert not model.movable and trimming_center(model, DescentSettings((2.5, 5.0))) is None
+    assert not replace(horus_2b_published(), lag=(0.0, -0.5)).movable
+
+
 def test_nothing_is_extrapolated():
     found = descend(horus_2b_published(), MASS, DescentSettings((1.2, 2.0)))
     outside, inside = found.points

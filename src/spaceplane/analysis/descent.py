@@ -213,7 +213,10 @@ def descend(
     say("modes between the flight points", 0, 1, "")
 
     def system_at(mach: float) -> StateSpace | None:
-        airframe = _trimmed(model, mass, mach, settings)[2]
+        try:
+            airframe = _trimmed(model, mass, mach, settings)[2]
+        except InputError:  # no glide through the altitudes in between, which takes nothing from the points flown
+            return None
         if airframe is None:
             return None
         return linearise(airframe.point, mass, model.reference, airframe.derivatives, settings.form)

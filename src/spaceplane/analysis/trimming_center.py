@@ -29,13 +29,17 @@ class TrimmingCenter:
     count: int
 
 
-def trimming_center(model: AeroModel, settings: DescentSettings) -> TrimmingCenter:
+def trimming_center(model: AeroModel, settings: DescentSettings) -> TrimmingCenter | None:
     """Look along the body for the places about which most flight points of a descent have a trim.
+
+    None where the model's moments are known about its own centre only.
 
     Args:
         model: aerodynamics, whose moment centre is the middle of the search.
         settings: Mach numbers, angles of attack and body flap.
     """
+    if not model.movable:
+        return None
     x, y, z = model.reference.moment_center
     places = x + model.reference.chord * np.arange(-REACH, REACH + 0.5 * STEP, STEP)
     counts = np.array([_trimmed(model.moved((float(place), y, z)), settings) for place in places])

@@ -183,6 +183,8 @@ def _elsewhere(descent: Descent) -> str:
     if 2 * trimmed > len(descent.points):
         return ""
     found, x = trimming_center(descent.model, descent.settings), descent.model.reference.moment_center[0]
+    if found is None:
+        return ""
     if found.count <= trimmed:
         return f" about x = {x:.2f} m"
     where = f"{found.lower:.2f} to {found.upper:.2f} m" if found.upper > found.lower else f"{found.lower:.2f} m"

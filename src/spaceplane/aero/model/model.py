@@ -208,6 +208,11 @@ class AeroModel:
         plain = {name: float(value) for name, value in (static | lateral | rest | lag).items()}
         return Derivatives(**plain, controls={name: float(value) for name, value in controls.items()})
 
+    @property
+    def movable(self) -> bool:
+        """Whether `moved` can take the moments to another centre."""
+        return self.center_known and not any(self.lag)
+
     def moved(self, center: tuple[float, float, float]) -> AeroModel:
         """The same aerodynamics about another moment centre; see `spaceplane.aero.model.move`.
 
