@@ -26,13 +26,15 @@ def points() -> tuple[tuple, ...]:
     from spaceplane.vehicle.properties import HORUS_MASS, HORUS_REFERENCE
 
     found = []
+    deflections = demo()["vehicle"]["deflections_deg"]
+    elevator = math.radians(0.5 * (deflections["elevon_left"] + deflections["elevon_right"]))
     for p in demo()["flight_points"]:
         at = taem_point(p["mach"], p["altitude_m"], p["alpha_deg"])
         at = at.with_coefficients(p["coefficients"]["CL"], p["coefficients"]["CD"])
         derivatives = from_mapping({name: d["value"] for name, d in p["derivatives"].items()})
         half_width = {name: d["error"] for name, d in p["derivatives"].items() if d["error"]}
         uncertainty = Uncertainty(half_width, mirror_correlation(derivatives, half_width))
-        airframe = Airframe(at, HORUS_MASS, HORUS_REFERENCE, derivatives, p["coefficients"]["Cm"])
+        airframe = Airframe(at, HORUS_MASS, HORUS_REFERENCE, derivatives, p["coefficients"]["Cm"], elevator)
         found.append((p["name"], airframe, uncertainty))
     return tuple(found)
 
